@@ -106,11 +106,20 @@ bool ContinuousContact::is_near(const ContactStep& step, ClothState& state) {
 /// them as the step begins; the rounds begin from there.
 void ContinuousContact::solve_long_step(const ContactStep& step, ClothState& state) {
   constraints_.clear();
-  for (std::size_t k = 0; k < pairs_.size(); ++k)
-    constraints_.push_back(constraint_of(k, step.system, step.position_before));
+  for (std::size_t k = 0; k < pairs_.size(); ++k) {
+    ContactConstraint& contact =
+        constraints_.emplace_back(constraint_of(k, step.system, step.position_before));
+    contact.bound =
+        std::min(contact.bound, contact.normal.dot(contact.rest));  // rounds separate what is nearer
+    const Separation& s = separations_[k];
+    const bool is_beside =
+        s.distance < near_factor * memory_[k].thickness && !is_contact(s, memory_[k].thickness);
+    if (is_beside || contact.normal.isZero(0)) contact.mobility = 0;  // no contact
+  }
   const LongStep whole{step.stage_weight * step.times.step, step.times.end, step.position_before,
                        step.integrator.force_left(step.forces, step.times)};
-  if (!stiff_target_.solve(step.system, step.forces, constraints_, whole, target_position_)) return;
+  if (!stiff_target_.solve(step.system, step.forces, constraints_, whole, arrived_length(), target_position_))
+    return;
   for (std::size_t i = 0; i < position_.size(); ++i)
     state.velocity.add(i, (target_position_[i] - state.position[i]) / whole.weight);
   state.position = free_position_ = target_position_;
@@ -164,7 +173,7 @@ ContactReport ContinuousContact::resolve_near(const ContactStep& step, ClothStat
   if (end != RoundsEnd::arrived) report.pinch = pinch(step.system);
   report.exhausted = end == RoundsEnd::exhausted;
   if (substeps_ > 1) drop_superseded_touches(step.position_before, duration);
-  if (!has_moved_ && touches_.empty() && loaded_.empty()) return report;
+  if (!has_moved_ && touches_.empty() && !force_work_) return report;
   report.acted = true;
   report.force_work = force_work_;
   report.pairs = pairs_.size() + waiting_.size();

@@ -193,7 +193,7 @@ ContactConstraint ContinuousContact::constraint_of(std::size_t k, const ClothSys
   if (is_staggered_ && (pair.kind == PairKind::vertex_plane || pair.kind == PairKind::vertex_box) &&
       !moves(obstacles_[at(pair.obstacle)]))
     contact.bound = staggered(contact.bound, pair.feature);
-  contact.friction = long_steps_ ? 0 : friction_of(pair);  // then it acts on velocities alone
+  contact.friction = force_work_ ? 0 : friction_of(pair);  // after a long step it acts on velocities alone
   contact.rest = contact.point(from);
   if (pair.obstacle != FeaturePair::cloth_itself) {
     Vec3 point = s.far_point;

@@ -15,6 +15,12 @@ double StiffTarget::missing(std::size_t contact, const Vec3Field& position) cons
   return c.bound - c.normal.dot(c.point(position));
 }
 
+/// N, with the penalty.
+double StiffTarget::load_at(std::size_t contact, const Vec3Field& position) const {
+  if (!(contacts_[contact].mobility > 0)) return 0;
+  return std::max(0.0, load_[contact] + penalty_[contact] * missing(contact, position));
+}
+
 double StiffTarget::largest_missing(const Vec3Field& position) const {
   double largest = 0;
   for (std::size_t c = 0; c < contacts_.size(); ++c)
@@ -22,7 +28,7 @@ double StiffTarget::largest_missing(const Vec3Field& position) const {
   return largest;
 }
 
-/// A penalty is ten times the stiffest block that it adds to, so that a few updates of the loads suffice.
+/// A penalty is ten times the largest inertia, M/w^2, that it adds to.
 void StiffTarget::add_penalties(const ClothSystem& system, double weight, const Vec3Field& position,
                                 Linearisation& matrix) {
   constexpr double part = 10;
@@ -40,7 +46,7 @@ void StiffTarget::add_penalties(const ClothSystem& system, double weight, const 
       weights += std::abs(contact.weight[k]);
     }
     penalty_[c] = part * largest / square;
-    if (!(load_[c] + penalty_[c] * missing(c, position) > 0)) continue;
+    if (!(load_at(c, position) > 0)) continue;
     for (std::size_t k = 0; k < at(contact.count); ++k)
       matrix.nodes.add(
           at(contact.particle[k]),
@@ -61,7 +67,7 @@ void StiffTarget::find_push(const ClothSystem& system, ForceModel& forces, const
     push_.set(i, push);
   }
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
-    const double load = load_[c] + penalty_[c] * missing(c, position);
+    const double load = load_at(c, position);
     if (!(load > 0)) continue;
     const ContactConstraint& contact = contacts_[c];
     for (std::size_t k = 0; k < at(contact.count); ++k) {
@@ -97,19 +103,18 @@ void StiffTarget::move(const ClothSystem& system, ForceModel& forces, const Long
 }
 
 void StiffTarget::update_loads(const Vec3Field& position) {
-  for (std::size_t c = 0; c < contacts_.size(); ++c)
-    load_[c] = contacts_[c].mobility > 0 ? std::max(0.0, load_[c] + penalty_[c] * missing(c, position)) : 0;
+  for (std::size_t c = 0; c < contacts_.size(); ++c) load_[c] = load_at(c, position);
 }
 
 bool StiffTarget::solve(const ClothSystem& system, ForceModel& forces,
-                        std::span<const ContactConstraint> contacts, const LongStep& step,
+                        std::span<const ContactConstraint> contacts, const LongStep& step, double accepted,
                         Vec3Field& position) {
   constexpr int most_iterations = 20;
   constexpr double least_work = 1e-3;     // of the first iteration's, and
   constexpr double least_missing = 0.01;  // of the first violation: ends below both
   contacts_ = contacts;
   const double first_missing = largest_missing(position);
-  if (!(first_missing > 0)) return false;
+  if (!(first_missing > accepted)) return false;
   if (push_.size() != position.size()) push_ = direction_ = right_ = Vec3Field(position.size());
   integrated_position_ = position;
   forces.update(position, step.end);
@@ -121,11 +126,17 @@ bool StiffTarget::solve(const ClothSystem& system, ForceModel& forces,
     if (!find_direction(system, forces, step, position)) break;
     const double before = dot(direction_.flat(), push_.flat());
     if (n == 0) first = before;
-    if (before <= least_work * first && largest_missing(position) <= least_missing * first_missing) break;
+    if (before <= least_work * first &&
+        largest_missing(position) <= std::max(accepted, least_missing * first_missing))
+      break;
     move(system, forces, step, before, position);
     update_loads(position);
   }
-  return true;
+  contacts_ = {};
+  const auto values = position.flat();
+  if (std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); })) return true;
+  position = integrated_position_;  // contact begins where the method ended
+  return false;
 }
 
 }  // namespace cloth

@@ -21,15 +21,17 @@ namespace cloth {
 
 class StiffTarget {
  public:
-  /// `position`: x* in, x out. Returns whether x* violates a constraint; else it stays.
+  /// `position`: x* in, x out. Contacts of mobility 0 are none. Violations of up to `accepted` m count as
+  /// none. Returns whether x* violates a constraint and x was found; else it stays.
   bool solve(const ClothSystem& system, ForceModel& forces, std::span<const ContactConstraint> contacts,
-             const LongStep& step, Vec3Field& position);
+             const LongStep& step, double accepted, Vec3Field& position);
 
   /// N, l of each contact of the last solve() that returned true.
   const std::vector<double>& loads() const { return load_; }
 
  private:
   double missing(std::size_t contact, const Vec3Field& position) const;
+  double load_at(std::size_t contact, const Vec3Field& position) const;
   double largest_missing(const Vec3Field& position) const;
   void add_penalties(const ClothSystem& system, double weight, const Vec3Field& position,
                      Linearisation& matrix);

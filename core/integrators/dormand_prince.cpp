@@ -125,6 +125,7 @@ bool DormandPrince::accept(ForceModel& forces, const StepTimes& inner, ClothStat
   if (!contact_) return true;
   const auto outcome = contact_->correct(inner, state);
   if (outcome == InnerStepContact::Outcome::changed) take_slope(forces, inner.end, state, report);
+  if (outcome == InnerStepContact::Outcome::ended) holds_slope_ = false;
   return outcome != InnerStepContact::Outcome::ended;
 }
 

@@ -37,11 +37,11 @@ void Simulation::resolve_contact(const StepTimes& times) {
 }
 
 void Simulation::book_contact(const StepTimes& times) {
-  run_.ledger.contact += run_.last_contact.work;
+  if (!inner_contact_) run_.ledger.contact += run_.last_contact.work;
   run_.contact_impulse += run_.last_contact.impulse;
   if (inner_contact_) return;
-  const Work change = integrator_->correct_work(*forces_, times, run_.state);
-  run_.ledger.forces += run_.last_contact.force_work.value_or(change);
+  const auto& found = run_.last_contact.force_work;
+  run_.ledger.forces += found ? *found : integrator_->correct_work(*forces_, times, run_.state);
 }
 
 /// What was lent to impulses of which none came back.

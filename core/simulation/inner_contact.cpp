@@ -19,13 +19,14 @@ InnerStepContact::Outcome InnerContact::correct(const StepTimes& times, ClothSta
   report_.rounds += found->rounds;
   report_.interrupted = found->interrupted;
   if (found->interrupted) return Outcome::ended;
-  if (!found->acted) return Outcome::unchanged;
+  report_.pinch = found->pinch, report_.exhausted = found->exhausted;
+  const bool ends = found->pinch || found->exhausted;
+  if (!found->acted) return ends ? Outcome::ended : Outcome::unchanged;
   report_.acted = true;
   report_.contacts = found->contacts, report_.pairs = found->pairs;
   report_.held_back = std::max(report_.held_back, found->held_back);
   report_.work += found->work, report_.impulse += found->impulse;
-  report_.pinch = found->pinch, report_.exhausted = found->exhausted;
-  return report_.pinch || report_.exhausted ? Outcome::ended : Outcome::changed;
+  return ends ? Outcome::ended : Outcome::changed;
 }
 
 ContactReport InnerContact::take_report() {

@@ -37,6 +37,15 @@ void Simulation::limit_deformation() {
   run_.last_limit = limiter_->report();
 }
 
+/// A rate that acts after a method's inner steps may move particles back into obstacles.
+void Simulation::limit_between_contacts(const StepTimes& times) {
+  const bool follows_contact = inner_contact_ && !limits_drift_;
+  if (follows_contact) inner_contact_->begin(run_.state);
+  limit_deformation();
+  if (follows_contact && inner_contact_->correct(times, run_.state) != InnerStepContact::Outcome::unchanged)
+    integrator_->forget(Change::state);
+}
+
 /// After contact, which answers the closing kick of held tensions as it does that of any load. It may also
 /// have stretched again what was within the rate: what counts is where the step ends.
 void Simulation::book_limiter() {

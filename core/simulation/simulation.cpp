@@ -192,10 +192,14 @@ void Simulation::choose_stepper() {
   stepper_kind_ = kind;
   limits_drift_ = integrator_->set_drift_constraint(limiter_ ? &*limiter_ : nullptr) && limiter_;
   inner_contact_.reset();
-  if (contact_ && facts_of(scene_.integrator.method).has_inner_steps)
+  const bool limits_after = limiter_ && !limits_drift_;
+  if (contact_ && facts_of(scene_.integrator.method).has_inner_steps &&
+      !(limits_after &&
+        contact_->is_continuous()))  // the rate would lead through what inner steps kept apart
     inner_contact_.emplace(
         [this](const StepTimes& times, const Vec3Field& position, const Vec3Field& velocity) {
           const auto found = contact_of(times, position, velocity);
+          if (found) run_.ledger.contact += found->work;
           if (found && !found->acted && !found->interrupted) end_contact();
           return found;
         });
@@ -221,8 +225,8 @@ std::optional<Divergence> Simulation::step() {
   const bool waits = has_continuous_contact() && !limiter_ && integrator_->waits_for_contact(*forces_);
   IntegratorReport report = waits ? integrator_->open_step(*forces_, times, run_.state, work)
                                   : integrator_->step(*forces_, times, run_.state, work);
-  if (limiter_ && !report.failure) limit_deformation();
-  if (contact_ && !report.failure) resolve_contact(times);
+  if (limiter_ && !report.failure) limit_between_contacts(times);
+  if (contact_ && (!report.failure || inner_contact_)) resolve_contact(times);
   report.velocity_iterations += run_.last_contact.velocity_iterations;
   if (waits && !run_.last_contact.acted && !run_.last_contact.interrupted)
     integrator_->close_step(*forces_, times, run_.state, work, report);
@@ -231,7 +235,7 @@ std::optional<Divergence> Simulation::step() {
     return std::nullopt;
   }
   if (limiter_ && !report.failure) book_limiter();
-  if (has_continuous_contact() && report.failure)
+  if (has_continuous_contact() && report.failure && !inner_contact_)
     run_.state.position = position_before_;  // nothing has led it there
   run_.state.time = times.end;
   run_.state.step = next;

@@ -193,6 +193,7 @@ class Simulation {
   void make_limiter(const std::vector<double>& tension);
   void limit_start();
   void limit_deformation();
+  void limit_between_contacts(const StepTimes& times);
   void book_limiter();
   void note_breach(bool by_contact);
   void resolve_contact(const StepTimes& times);

@@ -63,7 +63,7 @@ Solved solved(Scene scene, bool by_three) {
 
   Vec3Field position = ended;
   StiffTarget target;
-  EXPECT_TRUE(target.solve(system, forces, contacts, {weight, weight, begin}, position));
+  EXPECT_TRUE(target.solve(system, forces, contacts, {weight, weight, begin}, 0, position));
 
   forces.update(ended, weight);
   const Vec3Field force_before = forces.position_force();
@@ -114,7 +114,7 @@ TEST(StiffTarget, LeavesAStepThatViolatesNothing) {
   Vec3Field position = begin;
   StiffTarget target;
   const auto contacts = constraints_of(simulation.system(), begin, -0.001, false);
-  EXPECT_FALSE(target.solve(simulation.system(), forces, contacts, {weight, weight, begin}, position));
+  EXPECT_FALSE(target.solve(simulation.system(), forces, contacts, {weight, weight, begin}, 0, position));
   EXPECT_TRUE(std::ranges::equal(position.flat(), begin.flat()));
 }
 

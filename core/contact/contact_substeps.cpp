@@ -118,8 +118,11 @@ void ContinuousContact::solve_long_step(const ContactStep& step, ClothState& sta
   }
   const LongStep whole{step.stage_weight * step.times.step, step.times.end, step.position_before,
                        step.integrator.force_left(step.forces, step.times)};
-  if (!stiff_target_.solve(step.system, step.forces, constraints_, whole, arrived_length(), target_position_))
-    return;
+  // What gravity alone adds in a step is a load at rest, which friction of positions holds.
+  constexpr double above_fall = 1.01;
+  const double accepted =
+      std::max(arrived_length(), above_fall * gravity_ * step.times.step * step.times.step);
+  if (!stiff_target_.solve(step.system, step.forces, constraints_, whole, accepted, target_position_)) return;
   for (std::size_t i = 0; i < position_.size(); ++i)
     state.velocity.add(i, (target_position_[i] - state.position[i]) / whole.weight);
   state.position = free_position_ = target_position_;

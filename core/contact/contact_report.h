@@ -28,9 +28,9 @@ struct ContactReport {
   int held_back = 0;      ///< particles that did not reach their target position within the rounds
   double work = 0;        ///< J, given to the cloth by contact's impulses
   Vec3 impulse{0, 0, 0};  ///< N s, given to the cloth; only of continuous contact
-  /// Where continuous contact has solved for springs and contact together: Integrator::correct_work() at the
-  /// velocities of that solution. At those after friction, which changes velocities abruptly, the power of
-  /// dampers for as long as the step is would be more than they take.
+  /// The result of Integrator::correct_work() at the velocities of a long step's solution, where continuous
+  /// contact has solved for springs and contact together. Friction then changes velocities abruptly, and the
+  /// power of dampers at those, times the step, would be more than they take.
   std::optional<Work> force_work;
   int rounds = 0;               ///< of continuous contact
   int velocity_iterations = 0;  ///< of VelocitySolver

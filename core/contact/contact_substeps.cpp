@@ -90,16 +90,13 @@ void ContinuousContact::begin_substep(std::int64_t substep, const Vec3Field& fro
 
 /// Whether anything is near enough in this step for contact to have work. A state that is not finite is left
 /// as it is: the run stops there.
-bool ContinuousContact::is_near(const ContactStep& step, ClothState& state) {
+bool ContinuousContact::is_near(const ContactStep& step, const ClothState& state) {
   if (!all_finite(state.position) || !all_finite(state.velocity)) return false;
   free_position_ = target_position_ = state.position;
   position_ = step.position_before;
   begin(step.times);
   approach_position_ = state.position;
-  if (substeps_ > 1) return may_come_near();
-  if (!find_pairs()) return false;
-  if (long_steps_ && !step.integrator.velocity_follows_positions()) solve_long_step(step, state);
-  return true;
+  return substeps_ == 1 ? find_pairs() : may_come_near();
 }
 
 /// Leads the state to the solution of the step with the pairs' constraints, with the planes that separate
@@ -116,12 +113,13 @@ void ContinuousContact::solve_long_step(const ContactStep& step, ClothState& sta
         s.distance < near_factor * memory_[k].thickness && !is_contact(s, memory_[k].thickness);
     if (is_beside || contact.normal.isZero(0)) contact.mobility = 0;  // no contact
   }
-  const LongStep whole{step.stage_weight * step.times.step, step.times.end, step.position_before,
-                       step.integrator.force_left(step.forces, step.times)};
   // What gravity alone adds in a step is a load at rest, which friction of positions holds.
   constexpr double above_fall = 1.01;
   const double accepted =
       std::max(arrived_length(), above_fall * gravity_ * step.times.step * step.times.step);
+  if (StiffTarget::largest_violation(constraints_, target_position_) <= accepted) return;
+  const LongStep whole{step.stage_weight * step.times.step, step.times.end, step.position_before,
+                       step.integrator.force_left(step.forces, step.times)};
   if (!stiff_target_.solve(step.system, step.forces, constraints_, whole, accepted, target_position_)) return;
   for (std::size_t i = 0; i < position_.size(); ++i)
     state.velocity.add(i, (target_position_[i] - state.position[i]) / whole.weight);
@@ -154,7 +152,11 @@ void ContinuousContact::take_loads(const ContactStep& step, ClothState& state) {
 ContactReport ContinuousContact::resolve(const ContactStep& step, ClothState& state) {
   team_ = job_.begin();
   close_pairs_.set_team(team_);
-  const ContactReport report = is_near(step, state) ? resolve_near(step, state) : ContactReport{};
+  ContactReport report;
+  if (is_near(step, state)) {
+    if (long_steps_ && substeps_ == 1) solve_long_step(step, state);
+    report = resolve_near(step, state);
+  }
   job_.end();
   return report;
 }

@@ -73,7 +73,7 @@ class ContinuousContact : public ContactStage {
   };
   enum class RoundsEnd { arrived, pinched, exhausted, interrupted };
 
-  bool is_near(const ContactStep& step, ClothState& state);
+  bool is_near(const ContactStep& step, const ClothState& state);
   void solve_long_step(const ContactStep& step, ClothState& state);
   void take_loads(const ContactStep& step, ClothState& state);
   ContactReport resolve_near(const ContactStep& step, ClothState& state);

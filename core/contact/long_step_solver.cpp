@@ -1,6 +1,27 @@
 #include "contact/long_step_solver.h"
 
+#include "integrators/integrator.h"
+
 namespace cloth {
+
+void LongStepSolver::begin(ForceModel& forces, const LongStep& step, const Vec3Field& position) {
+  integrated_position_ = position;
+  forces.update(position, step.end);
+  integrated_force_ = forces.position_force();
+}
+
+void LongStepSolver::find_residual(const ClothSystem& system, ForceModel& forces, const LongStep& step,
+                                   const Vec3Field& position, Vec3Field& residual) const {
+  forces.update(position, step.end);
+  const Vec3Field& force = forces.position_force();
+  for (std::size_t i = 0; i < position.size(); ++i) {
+    const Vec3 moved = position[i] - integrated_position_[i];
+    residual.set(i, system.pinned[i] ? Vec3::Zero()
+                                     : Vec3(system.mass[i] / (step.weight * step.weight) * moved -
+                                            (force[i] - integrated_force_[i])));
+  }
+  if (step.force) add_scaled(1, *step.force, residual);
+}
 
 Linearisation& LongStepSolver::linearise(const ClothSystem& system, ForceModel& forces, double weight,
                                          const Vec3Field& position) {

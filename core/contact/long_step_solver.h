@@ -1,6 +1,11 @@
-// The linear systems of contact after long steps: A = M + w^2 K, w the weight of the force in the step in s,
-// K clamped to be positive semidefinite, with what constraints add to the blocks of particles. Solved by
-// factors, conjugate gradients or multigrid, whichever is the cheapest for the cloth.
+// What the two ways to solve a long step with contact share (contact/stiff_contact.h,
+// contact/stiff_target.h): what is left of its equation without contact,
+//
+//     g(x) = M (x - x*)/w^2 - (f(x) - f(x*)) + r
+//
+// and linear systems with A = M + w^2 K, K clamped to be positive semidefinite, and what constraints add to
+// the blocks of particles. They are solved by factors, conjugate gradients or multigrid, whichever is the
+// cheapest for the cloth.
 #pragma once
 
 #include "forces/force_model.h"
@@ -10,8 +15,25 @@
 
 namespace cloth {
 
+/// The step that contact is a constraint of.
+struct LongStep {
+  double weight = 0;                 ///< s, w
+  double end = 0;                    ///< s, its time
+  const Vec3Field& begin;            ///< m, the positions
+  const Vec3Field* force = nullptr;  ///< N, r; null: 0
+};
+
 class LongStepSolver {
  public:
+  /// `position`: x*.
+  void begin(ForceModel& forces, const LongStep& step, const Vec3Field& position);
+
+  /// g in N, 0 on pins. Updates the force model to the positions.
+  void find_residual(const ClothSystem& system, ForceModel& forces, const LongStep& step,
+                     const Vec3Field& position, Vec3Field& residual) const;
+
+  const Vec3Field& integrated_force() const { return integrated_force_; }  ///< N, f(x*)
+
   /// A at the positions, in kg, for constraints to be added to its blocks.
   Linearisation& linearise(const ClothSystem& system, ForceModel& forces, double weight,
                            const Vec3Field& position);
@@ -21,6 +43,7 @@ class LongStepSolver {
              Vec3Field& solution);
 
  private:
+  Vec3Field integrated_position_, integrated_force_;  ///< m, N
   LinearMethod method_ = LinearMethod::cholesky;
   Linearisation linearisation_;
   CholeskyFactors factors_;

@@ -64,15 +64,7 @@ void StiffContact::hold(const ClothSystem& system, Vec3Field& position) {
 /// N; its normal component becomes the normal load of the particles in contact.
 void StiffContact::find_residual(const ClothSystem& system, ForceModel& forces, const LongStep& step,
                                  const Vec3Field& position) {
-  forces.update(position, step.end);
-  const Vec3Field& force = forces.position_force();
-  for (std::size_t i = 0; i < position.size(); ++i) {
-    const Vec3 moved = position[i] - integrated_position_[i];
-    residual_.set(i, system.pinned[i] ? Vec3::Zero()
-                                      : Vec3(system.mass[i] / (step.weight * step.weight) * moved -
-                                             (force[i] - integrated_force_[i])));
-  }
-  if (step.force) add_scaled(1, *step.force, residual_);
+  solver_.find_residual(system, forces, step, position, residual_);
   for (HeldParticle& held : held_) held.normal_load = held.normal.dot(residual_[held.particle]);
 }
 
@@ -111,9 +103,7 @@ std::vector<HeldParticle> StiffContact::solve(const ClothSystem& system, ForceMo
   if (residual_.size() != position.size())
     residual_ = direction_ = start_ = along_ = Vec3Field(position.size());
   begin_solve(obstacles, step.begin, position.size());
-  integrated_position_ = position;
-  forces.update(integrated_position_, step.end);
-  integrated_force_ = forces.position_force();
+  solver_.begin(forces, step, position);
   hold(system, position);
   find_residual(system, forces, step, position);
   double first = 0;  // J, negative
@@ -140,7 +130,7 @@ std::vector<HeldParticle> StiffContact::solve(const ClothSystem& system, ForceMo
   release();
   const Vec3Field& force = forces.position_force();
   for (HeldParticle& held : held_) {
-    Vec3 load = integrated_force_[held.particle] - force[held.particle];
+    Vec3 load = solver_.integrated_force()[held.particle] - force[held.particle];
     if (step.force) load += (*step.force)[held.particle];
     held.normal_load = std::max(0.0, step.weight * held.normal.dot(load));
   }

@@ -28,14 +28,6 @@
 
 namespace cloth {
 
-/// The step that contact is a constraint of.
-struct LongStep {
-  double weight = 0;                 ///< s, w
-  double end = 0;                    ///< s, its time
-  const Vec3Field& begin;            ///< m, the positions
-  const Vec3Field* force = nullptr;  ///< N, r; null: 0
-};
-
 class StiffContact {
  public:
   /// Moves `position`, the result of the step, out of the obstacles. Returns the particles in contact, in
@@ -65,7 +57,7 @@ class StiffContact {
   bool find_direction(const ClothSystem& system, ForceModel& forces, double weight,
                       const Vec3Field& position);
 
-  Vec3Field begin_, integrated_position_, integrated_force_;  ///< m, N
+  Vec3Field begin_;  ///< m
   Vec3Field residual_, direction_, start_, along_;
   std::vector<HeldParticle> held_;  ///< on a surface; after release() with a normal force > 0
   std::span<const Obstacle> obstacles_;

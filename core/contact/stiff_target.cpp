@@ -10,21 +10,21 @@
 namespace cloth {
 
 /// m, positive where the constraint is violated.
-double StiffTarget::missing(std::size_t contact, const Vec3Field& position) const {
-  const ContactConstraint& c = contacts_[contact];
-  return c.bound - c.normal.dot(c.point(position));
+static double missing(const ContactConstraint& contact, const Vec3Field& position) {
+  return contact.bound - contact.normal.dot(contact.point(position));
 }
 
 /// N, with the penalty.
 double StiffTarget::load_at(std::size_t contact, const Vec3Field& position) const {
   if (!(contacts_[contact].mobility > 0)) return 0;
-  return std::max(0.0, load_[contact] + penalty_[contact] * missing(contact, position));
+  return std::max(0.0, load_[contact] + penalty_[contact] * missing(contacts_[contact], position));
 }
 
-double StiffTarget::largest_missing(const Vec3Field& position) const {
+double StiffTarget::largest_violation(std::span<const ContactConstraint> contacts,
+                                      const Vec3Field& position) {
   double largest = 0;
-  for (std::size_t c = 0; c < contacts_.size(); ++c)
-    if (contacts_[c].mobility > 0) largest = std::max(largest, missing(c, position));
+  for (const ContactConstraint& contact : contacts)
+    if (contact.mobility > 0) largest = std::max(largest, missing(contact, position));
   return largest;
 }
 
@@ -57,15 +57,8 @@ void StiffTarget::add_penalties(const ClothSystem& system, double weight, const 
 /// What the forces, the inertia and the contacts together push the particles with.
 void StiffTarget::find_push(const ClothSystem& system, ForceModel& forces, const LongStep& step,
                             const Vec3Field& position) {
-  forces.update(position, step.end);
-  const Vec3Field& force = forces.position_force();
-  for (std::size_t i = 0; i < position.size(); ++i) {
-    if (system.pinned[i]) continue;
-    const Vec3 moved = position[i] - integrated_position_[i];
-    Vec3 push = force[i] - integrated_force_[i] - system.mass[i] / (step.weight * step.weight) * moved;
-    if (step.force) push -= (*step.force)[i];
-    push_.set(i, push);
-  }
+  solver_.find_residual(system, forces, step, position, push_);
+  for (double& value : push_.flat()) value = -value;
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
     const double load = load_at(c, position);
     if (!(load > 0)) continue;
@@ -113,12 +106,11 @@ bool StiffTarget::solve(const ClothSystem& system, ForceModel& forces,
   constexpr double least_work = 1e-3;     // of the first iteration's, and
   constexpr double least_missing = 0.01;  // of the first violation: ends below both
   contacts_ = contacts;
-  const double first_missing = largest_missing(position);
+  const double first_missing = largest_violation(contacts, position);
   if (!(first_missing > accepted)) return false;
   if (push_.size() != position.size()) push_ = direction_ = right_ = Vec3Field(position.size());
   integrated_position_ = position;
-  forces.update(position, step.end);
-  integrated_force_ = forces.position_force();
+  solver_.begin(forces, step, position);
   load_.assign(contacts.size(), 0.0);
   penalty_.assign(contacts.size(), 0.0);
   double first = 0;  // J
@@ -127,7 +119,7 @@ bool StiffTarget::solve(const ClothSystem& system, ForceModel& forces,
     const double before = dot(direction_.flat(), push_.flat());
     if (n == 0) first = before;
     if (before <= least_work * first &&
-        largest_missing(position) <= std::max(accepted, least_missing * first_missing))
+        largest_violation(contacts, position) <= std::max(accepted, least_missing * first_missing))
       break;
     move(system, forces, step, before, position);
     update_loads(position);

@@ -15,12 +15,14 @@
 
 #include "contact/contact_solver.h"
 #include "contact/long_step_solver.h"
-#include "contact/stiff_contact.h"
 
 namespace cloth {
 
 class StiffTarget {
  public:
+  /// m, of the contacts at the positions.
+  static double largest_violation(std::span<const ContactConstraint> contacts, const Vec3Field& position);
+
   /// `position`: x* in, x out. Contacts of mobility 0 are none. Violations of up to `accepted` m count as
   /// none. Returns whether x* violates a constraint and x was found; else it stays.
   bool solve(const ClothSystem& system, ForceModel& forces, std::span<const ContactConstraint> contacts,
@@ -30,9 +32,7 @@ class StiffTarget {
   const std::vector<double>& loads() const { return load_; }
 
  private:
-  double missing(std::size_t contact, const Vec3Field& position) const;
   double load_at(std::size_t contact, const Vec3Field& position) const;
-  double largest_missing(const Vec3Field& position) const;
   void add_penalties(const ClothSystem& system, double weight, const Vec3Field& position,
                      Linearisation& matrix);
   void find_push(const ClothSystem& system, ForceModel& forces, const LongStep& step,
@@ -44,9 +44,8 @@ class StiffTarget {
   void update_loads(const Vec3Field& position);
 
   std::span<const ContactConstraint> contacts_;
-  Vec3Field integrated_position_, integrated_force_;  ///< m, N
-  Vec3Field push_;                                    ///< N, what is left of the equation, 0 on pins
-  Vec3Field direction_, right_, start_;
+  Vec3Field push_;  ///< N, what is left of the equation, 0 on pins
+  Vec3Field integrated_position_, direction_, right_, start_;
   std::vector<double> load_, penalty_;  ///< N, N/m, of each contact
   std::vector<double> size_;            ///< kg, of each particle's block
   LongStepSolver solver_;

@@ -108,8 +108,8 @@ class Integrator {
   virtual void close_step(ForceModel&, const StepTimes&, ClothState&, Work&, IntegratorReport& /*report*/) {}
 
   /// Of methods that take a number of iterations instead of solving the equation of a step,
-  /// M (v' - v)/h = f(x', v'): the difference of its sides at the end of the last step, in N, zero on pins.
-  /// It must be called before the next one. Null: the method solves it, or has none.
+  /// M (v' - v)/h = f(x', v'): its left side less its right side at the end of the last step, in N, zero on
+  /// pins. The caller asks before the next step begins. Null: the method solves the equation, or has none.
   virtual const Vec3Field* force_left(ForceModel&, const StepTimes&) { return nullptr; }
 
   /// Whether several steps in one call cost less than single steps, where the states in between are not

@@ -1,6 +1,7 @@
 // Runs a scene step by step. Simulation::step runs the stages integrate, limit the deformation, contact,
 // advance time, in this order, and keeps the energy ledger; with Verlet the limiter acts within the
-// integrator's step, between drift and closing kick. The stages are integrators/integrator.h,
+// integrator's step, between drift and closing kick, and methods with inner steps meet contact at the end of
+// each of these (inner_contact.h). The stages are integrators/integrator.h,
 // limiter/step_limiter.h and contact/contact_stage.h; a stage that the scene does not need is not made and
 // costs nothing. explain_stages() (stages.h) lists the stages of a scene and what each does in a step;
 // StepCount (outcome.h) counts the work done.

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "contact/contact_solver.h"
+#include "contact/contact_constraint.h"
 
 namespace cloth {
 

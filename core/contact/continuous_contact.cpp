@@ -19,6 +19,8 @@ constexpr double skin_part = 0.35;  ///< of a mean edge, see PairSearch
 /// Ten times as much lets a damped cloth creep over a ball by 0.4 mm in a second.
 constexpr double solver_tolerance_part = 1e-6;
 constexpr int solver_sweeps = 20;
+/// Of the thickness: contacts that their particles would keep by more take part where others violate them.
+constexpr double beside_part = 0.1;
 /// Stacks of layers need more: sweeps continue while some pair misses more than `missing_part` of its
 /// thickness and that decreases.
 constexpr double missing_part = 0.03, less_missing = 0.9;
@@ -247,11 +249,10 @@ void ContinuousContact::solve_target(const ClothSystem& system, const Vec3Field&
   for (const ContactConstraint& contact : constraints_)
     apply_impulses(contact, system.inverse_mass, target_position_);
   double last_missing = infinity;
-  int sweeps = solver_sweeps;
-  for (int all = 0; all < max_solver_sweeps; all += sweeps, sweeps = more_solver_sweeps) {
-    const int taken = solver_.solve(constraints_, system.inverse_mass,
-                                    {sweeps, solver_tolerance_part * thickness_}, target_position_);
-    if (taken < sweeps) return;
+  SolveLimits limits{solver_sweeps, solver_tolerance_part * thickness_, beside_part * thickness_};
+  for (int all = 0; all < max_solver_sweeps; all += limits.sweeps, limits.sweeps = more_solver_sweeps) {
+    const int taken = solver_.solve(constraints_, system.inverse_mass, limits, target_position_);
+    if (taken < limits.sweeps) return;
     const double missing = largest_violation();
     if (missing <= missing_part || missing > less_missing * last_missing) return;
     last_missing = missing;

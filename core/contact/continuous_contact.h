@@ -182,7 +182,7 @@ class ContinuousContact : public ContactStage {
   std::vector<std::size_t> constraint_pair_;
   std::vector<std::size_t> first_of_particle_, ordered_;  ///< scratch
   std::vector<Touch> touches_;
-  std::optional<Work> force_work_;  ///< of a step solved by StiffTarget, see ContactReport
+  std::optional<Work> force_work_;            ///< of a step solved by StiffTarget, see ContactReport
   std::vector<Touch> loaded_;                 ///< contacts of StiffTarget, with impulses of their loads
   std::optional<std::size_t> blocking_pair_;  ///< stopped an obstacle in this round
   bool reached_bounds_ = false;               ///< a capsule stopped its particle in this round

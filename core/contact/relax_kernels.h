@@ -12,19 +12,30 @@ struct alignas(32) ContactValue {
   double of[4] = {0, 0, 0, 0};
 };
 
-/// A contact as its relaxation reads it: ContactConstraint with products made once. Vectors have a fourth
-/// number, 0. Where it has fewer than four particles the remaining weights are 0.
-struct alignas(32) ContactRow {
-  double normal[4], rest[4], friction_impulse[4];
-  double weight[4];    ///< of the particles' values in the contact's point
-  double response[4];  ///< weight times inverse mass, 1/kg: change of the values by an impulse
-  int slot[4];         ///< of the particles, in the array of values
-  double bound, rest_level, inverse_mobility, friction, normal_impulse;  ///< rest_level: normal . rest
+/// Four contacts side by side: ContactConstraint with products made once. Of an empty place, and of the
+/// particles that a contact does not have, all is 0 but the slots: theirs are those of values that belong to
+/// no particle.
+struct alignas(32) FourContacts {
+  double weight[4][4];    ///< of each contact, of the particles' values in its point
+  double response[4][4];  ///< weight times inverse mass, 1/kg: change of the values by an impulse
+  int slot[4][4];         ///< of each contact, its particles in the array of values
+  double normal[3][4], rest[3][4], friction_impulse[3][4];
+  double bound[4], rest_level[4];  ///< rest_level: normal . rest
+  double inverse_mobility[4], friction[4], normal_impulse[4];
+};
+
+/// Contacts none of which moves a particle of another. All are read before one is moved: where a processor
+/// expects a load to wait for a store of the last batch, it waits once for eight of them.
+struct ContactBatch {
+  static constexpr int width = 8;
+  static constexpr int spare = width * 4;  ///< values of no particle that it needs, at most
+
+  FourContacts four[width / 4];
 };
 
 struct RelaxKernels {
-  /// Relaxes rows[order[0]], rows[order[1]], ... one after the other.
-  void (*relax)(ContactRow* rows, const int* order, int count, ContactValue* values);
+  /// Relaxes the contacts of batches[order[0]], batches[order[1]], ... one batch after the other.
+  void (*relax)(ContactBatch* batches, const int* order, int count, ContactValue* values);
 
   /// Sets moved[k] to whether values[k] differs from before[k] by more than the root of `squared_tolerance`,
   /// and before[k] to values[k]. Returns whether any has moved.

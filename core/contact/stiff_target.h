@@ -13,7 +13,7 @@
 #include <span>
 #include <vector>
 
-#include "contact/contact_solver.h"
+#include "contact/contact_constraint.h"
 #include "contact/long_step_solver.h"
 
 namespace cloth {

@@ -124,5 +124,56 @@ TEST(ContactSolver, SolvesAChainToWhatAllItsSweepsWouldLeave) {
   EXPECT_GT(apart, 1);
 }
 
+/// More than colours are told apart by bits.
+TEST(ContactSolver, SolvesManyContactsOfOneParticle) {
+  constexpr int count = 200;
+  const std::vector<double> inverse_mass(count + 1, 1.0);
+  Vec3Field value(count + 1);
+  for (std::size_t i = 0; i <= count; ++i) value.set(i, {0, -static_cast<double>(i), 0});
+  std::vector<ContactConstraint> contacts;
+  for (int k = 1; k <= count; ++k) {  // each neighbour above the same particle, which may give way
+    ContactConstraint contact = on_floor(k, 0);
+    contact.count = 2, contact.particle = {k, 0}, contact.weight = {1, -1};
+    contact.mobility = mobility_of(contact, inverse_mass);
+    contacts.push_back(contact);
+  }
+  ContactSolver().solve(contacts, inverse_mass, {.sweeps = 100000, .tolerance = 1e-12}, value);
+  double momentum = 0;
+  for (std::size_t i = 0; i <= count; ++i) momentum += value[i].y();
+  EXPECT_NEAR(momentum, -0.5 * count * (count + 1), 1e-6);
+  for (const ContactConstraint& contact : contacts) {
+    const double gap = contact.normal.dot(contact.point(value));
+    EXPECT_GE(gap, -1e-6);
+    EXPECT_LE(std::abs(gap * contact.normal_impulse), 1e-4);
+  }
+}
+
+/// Particles that stand on each other in a row: the push at one end reaches those that were left out.
+TEST(ContactSolver, LeavesOutContactsThatAreFarUntilOthersBringThemNear) {
+  constexpr int count = 20;
+  std::vector<double> inverse_mass(count, 1.0);
+  Vec3Field start(count);
+  for (std::size_t i = 0; i < count; ++i) start.set(i, {0, 1.5 * static_cast<double>(i), 0});
+  std::vector<ContactConstraint> contacts{on_floor(0, 0.3)};
+  contacts[0].bound = 2;
+  for (int k = 1; k < count; ++k) {
+    ContactConstraint contact = on_floor(k, 0.3);
+    contact.count = 2, contact.particle = {k, k - 1}, contact.weight = {1, -1};
+    contact.bound = 1, contact.mobility = mobility_of(contact, inverse_mass);
+    contacts.push_back(contact);
+  }
+  SolveLimits limits{.sweeps = 10000, .tolerance = 1e-13};
+  Vec3Field all = start, few = start;
+  std::vector<ContactConstraint> of_all = contacts, of_few = contacts;
+  ContactSolver solver;
+  solver.solve(of_all, inverse_mass, limits, all);
+  limits.margin = 0.1;
+  solver.solve(of_few, inverse_mass, limits, few);
+  EXPECT_GT(all[3].y(), start[3].y() + 0.1) << "nothing is pushed so far";
+  for (std::size_t i = 0; i < count; ++i) EXPECT_LE((all[i] - few[i]).norm(), 1e-10) << i;
+  for (std::size_t c = 0; c < contacts.size(); ++c)
+    EXPECT_NEAR(of_all[c].normal_impulse, of_few[c].normal_impulse, 1e-10) << c;
+}
+
 }  // namespace
 }  // namespace cloth::test::contact_solver_test

@@ -6,22 +6,29 @@
 #include <cmath>
 #include <string_view>
 
-#include "contact/contact_work.h"
+#include "contact/touch_kernels.h"
+#include "kernels/instruction_set.h"
 
 namespace cloth {
 namespace {
 
 constexpr double above_rounding = 1e-9;  // m
 
-/// J, of the impulse `change` times the mass on a particle.
-double stopping_work(double mass, const Vec3& normal, const PointSpeeds& speeds, const Vec3& change,
-                     double normal_load) {
-  ContactConstraint contact;
-  contact.normal = normal;
-  contact.mobility = 1 / mass;
-  contact.normal_impulse = normal_load + std::max(0.0, mass * change.dot(normal));
-  contact.friction_impulse = mass * (change - change.dot(normal) * normal);
-  return work_of(contact, speeds);
+void copy(const Vec3Field& field, std::size_t first, std::size_t count, TouchBlock::Vectors& to) {
+  std::copy_n(field.x() + first, count, to[0]);
+  std::copy_n(field.y() + first, count, to[1]);
+  std::copy_n(field.z() + first, count, to[2]);
+}
+void copy(const TouchBlock::Vectors& from, std::size_t first, std::size_t count, Vec3Field& field) {
+  std::copy_n(from[0], count, field.x() + first);
+  std::copy_n(from[1], count, field.y() + first);
+  std::copy_n(from[2], count, field.z() + first);
+}
+void set(TouchBlock::Vectors& to, std::size_t k, const Vec3& v) {
+  to[0][k] = v.x(), to[1][k] = v.y(), to[2][k] = v.z();
+}
+Vec3 get(const TouchBlock::Vectors& from, std::size_t k) {
+  return {from[0][k], from[1][k], from[2][k]};
 }
 
 /// A signed measure of how far each particle is from the obstacle, at most 0 for every particle inside and
@@ -62,6 +69,10 @@ void add_nearest(const Obstacle& obstacle, const Vec3Field& position, std::vecto
   }
 }
 
+bool is_near(double nearest) {
+  return nearest <= 0;
+}
+
 std::vector<double> nearest_of(const std::vector<Obstacle>& obstacles, const Vec3Field& position) {
   std::vector<double> nearest(position.size(), infinity);
   for (const Obstacle& obstacle : obstacles) add_nearest(obstacle, position, nearest);
@@ -71,7 +82,7 @@ std::vector<double> nearest_of(const std::vector<Obstacle>& obstacles, const Vec
 bool any_inside(const Obstacle& obstacle, const ClothSystem& system, const Vec3Field& position) {
   const std::vector<double> nearest = nearest_of({obstacle}, position);
   for (std::size_t i = 0; i < position.size(); ++i)
-    if (nearest[i] <= 0 && !system.pinned[i] && penetration(obstacle, position[i])) return true;
+    if (is_near(nearest[i]) && !system.pinned[i] && penetration(obstacle, position[i])) return true;
   return false;
 }
 
@@ -89,19 +100,17 @@ Obstacle grown(Obstacle obstacle, double length) {
 }
 
 Vec3 contact_velocity(const Obstacle& obstacle, const Vec3& normal, const Vec3& velocity) {
-  return contact_velocity(obstacle, normal, velocity, -velocity.dot(normal));
-}
-
-Vec3 contact_velocity(const Obstacle& obstacle, const Vec3& normal, const Vec3& velocity, double approach,
-                      double normal_load) {
-  const double inward = velocity.dot(normal);
-  if (!(inward < 0)) return velocity;
-  if (reflects(obstacle)) return obstacle.friction * (velocity - 2 * inward * normal);
-  const Vec3 tangential = velocity - inward * normal;
-  const double rebound = obstacle.restitution * approach, change = rebound - inward;
-  const double speed = tangential.norm();
-  const double kept = speed > 0 ? std::max(0.0, 1 - obstacle.friction * (change + normal_load) / speed) : 0;
-  return kept * tangential + rebound * normal;
+  TouchBlock block{};
+  std::fill_n(block.mass, TouchBlock::size, 1.0);
+  block.touched[0] = 1;
+  set(block.normal, 0, normal);
+  block.held[0] = 1;  // it comes at this velocity
+  for (TouchBlock::Vectors* each :
+       {&block.start_velocity, &block.integrated_velocity, &block.velocity, &block.before})
+    set(*each, 0, velocity);
+  active_kernels<TouchKernels>().respond({obstacle.friction, obstacle.restitution, reflects(obstacle), 1, 0},
+                                         block);
+  return get(block.velocity, 0);
 }
 
 std::optional<TunnellingRisk> find_tunnelling(const std::vector<Obstacle>& obstacles,
@@ -131,105 +140,106 @@ std::string describe(const TunnellingRisk& risk) {
 ObstacleContact::ObstacleContact(std::vector<Obstacle> obstacles, double gravity)
     : obstacles_(std::move(obstacles)), gravity_(gravity) {}
 
-/// m/s, the approach speed to which restitution applies. A particle without contact in the last step: its
-/// mean speed in this step. One with contact: its speed at the beginning of the step, because what the step
-/// adds is load. 0 below twice what gravity or the load adds in a step, or a cloth at rest would keep
-/// bouncing.
-double ObstacleContact::approach_of(const Particle& particle, const Vec3& normal,
-                                    const ContactBegin& begin) const {
-  const std::size_t i = particle.index;
-  const Vec3 began = begin.velocity[i];
-  const Vec3 speed =
-      begin.memory.held[i] ? began : Vec3((particle.integrated_position - begin.position[i]) / begin.step);
-  const double load = normal.dot(began - particle.integrated_velocity);
-  const double approach = -speed.dot(normal);
-  return approach > 2 * std::max(gravity_ * begin.step, load) ? approach : 0;
-}
-
 ContactReport ObstacleContact::apply(const ClothSystem& system, const ContactBegin& begin,
                                      ClothState& state) const {
   ContactReport report;
-  begin.memory.resize(state.position.size());
+  const std::size_t particles = state.position.size();
+  begin.memory.resize(particles);
   std::span<const HeldParticle> held;
   if (begin.constrained) held = begin.constrained->held;
   const std::vector<double> nearest =
-      begin.constrained ? std::vector<double>() : nearest_of(obstacles_, state.position);
-  for (std::size_t i = 0; i < state.position.size(); ++i) {
-    if (system.pinned[i]) continue;
-    if (!begin.constrained && !(nearest[i] <= 0)) {
-      begin.memory.held[i] = 0;
-      continue;
-    }
-    Particle particle{i, state.position[i], state.velocity[i], {}, begin.velocity[i]};
-    while (particle.held.size() < held.size() && held[particle.held.size()].particle == i)
-      particle.held = held.first(particle.held.size() + 1);
-    held = held.subspan(particle.held.size());
-    if (begin.constrained) move_to_constrained(particle, *begin.constrained, state);
-    const bool touched = touch(system, particle, begin, state, report);
-    if (!touched) begin.memory.held[i] = 0;
+      begin.constrained ? std::vector<double>(particles, 0.0) : nearest_of(obstacles_, state.position);
+  TouchBlock block{};
+  for (std::size_t first = 0; first < particles; first += TouchBlock::size) {
+    Piece piece{first, std::min<std::size_t>(TouchBlock::size, particles - first), {}, {}};
+    piece.nearest = std::span(nearest).subspan(first, piece.count);
+    const auto after = std::find_if(held.begin(), held.end(),
+                                    [&](const HeldParticle& h) { return h.particle >= first + piece.count; });
+    piece.held = held.first(static_cast<std::size_t>(after - held.begin()));
+    held = held.subspan(piece.held.size());
+    if (std::any_of(piece.nearest.begin(), piece.nearest.end(), is_near))
+      respond(system, begin, piece, block, state, report);
+    else
+      std::fill_n(begin.memory.held.begin() + static_cast<std::ptrdiff_t>(first), piece.count,
+                  std::uint8_t{0});
   }
   report.acted = report.contacts > 0;
   return report;
 }
 
-/// Moves a particle to its constrained position. Its velocity changes by the displacement along the surfaces
-/// that hold it; the normal velocity stays.
-void ObstacleContact::move_to_constrained(const Particle& particle, const ConstrainedStep& constrained,
-                                          ClothState& state) {
-  const std::size_t i = particle.index;
-  Vec3 moved = constrained.position[i] - particle.integrated_position;
-  for (const HeldParticle& held : particle.held) moved -= held.normal.dot(moved) * held.normal;
-  state.position.set(i, constrained.position[i]);
-  state.velocity.add(i, moved / constrained.weight);
-}
-
-/// The surface point and the normal load of the particle, if it touches the obstacle.
-std::optional<ObstacleContact::Touched> ObstacleContact::touched(std::size_t obstacle,
-                                                                 const Particle& particle,
-                                                                 const Vec3& position,
-                                                                 bool constrained) const {
-  if (!constrained) {
-    const auto surface = penetration(obstacles_[obstacle], position);
-    return surface ? std::optional(Touched{*surface, 0}) : std::nullopt;
-  }
-  for (const HeldParticle& held : particle.held)
-    if (held.obstacle == obstacle) return Touched{{position, held.normal}, held.normal_load};
-  return std::nullopt;
-}
-
-/// One particle and all obstacles, in their order.
-bool ObstacleContact::touch(const ClothSystem& system, Particle& particle, const ContactBegin& begin,
-                            ClothState& state, ContactReport& report) const {
-  const std::size_t i = particle.index;
-  const double mass = system.mass[i];
-  bool is_touched = false, bounced = false;
+/// One obstacle after the other.
+void ObstacleContact::respond(const ClothSystem& system, const ContactBegin& begin, const Piece& piece,
+                              TouchBlock& block, ClothState& state, ContactReport& report) const {
+  const auto& [first, count, nearest, held] = piece;
+  std::fill_n(block.mass, TouchBlock::size, 1.0);
+  std::copy_n(system.mass.data() + first, count, block.mass);
+  std::copy_n(begin.memory.held.data() + first, count, block.held);
+  copy(begin.position, first, count, block.start), copy(begin.velocity, first, count, block.start_velocity);
+  copy(begin.velocity, first, count, block.before);
+  copy(state.position, first, count, block.integrated_position);
+  copy(state.velocity, first, count, block.integrated_velocity);
+  copy(state.position, first, count, block.position), copy(state.velocity, first, count, block.velocity);
+  std::fill_n(block.work, TouchBlock::size, 0.0), std::fill_n(block.answers, TouchBlock::size, 0.0);
+  if (begin.constrained) move_to_constrained(system, *begin.constrained, piece, block);
   for (std::size_t k = 0; k < obstacles_.size(); ++k) {
-    const auto place = touched(k, particle, state.position[i], begin.constrained != nullptr);
-    if (!place) continue;
-    const auto& [surface, normal_load] = *place;
-    const Vec3 speed = state.velocity[i];
-    const double approach = approach_of(particle, surface.normal, begin);
-    const Vec3 stopped = contact_velocity(obstacles_[k], surface.normal, speed, 0, normal_load / mass);
-    Vec3 answer = stopped;
-    if (approach > 0)
-      answer = contact_velocity(obstacles_[k], surface.normal, speed, approach, normal_load / mass);
-    const PointSpeeds speeds{particle.before, stopped, (surface.point - begin.position[i]) / begin.step};
-    const double work = stopping_work(mass, surface.normal, speeds, stopped - speed, normal_load);
-    const double square = 0.5 * mass * (answer - stopped).squaredNorm();
-    if (square > 0) {  // returns no more energy than contact has taken
-      const double linear = mass * stopped.dot(answer - stopped);
-      answer = stopped + part_within(square, linear, std::max(-work, 0.0)) * (answer - stopped);
-    }
-    state.position.set(i, surface.point);
-    state.velocity.set(i, answer);
-    report.work += work + 0.5 * mass * (answer.squaredNorm() - stopped.squaredNorm());
-    particle.before = answer;
-    bounced = bounced || answer != stopped;
-    is_touched = true;
-    ++report.contacts;
+    const Obstacle& obstacle = obstacles_[k];
+    const int touched = begin.constrained ? find_held(k, piece, block) : find_inside(k, system, piece, block);
+    if (touched == 0) continue;
+    active_kernels<TouchKernels>().respond(
+        {obstacle.friction, obstacle.restitution, reflects(obstacle), begin.step, gravity_ * begin.step},
+        block);
+    report.contacts += touched;
   }
-  if (is_touched) begin.memory.held[i] = !bounced;
-  return is_touched;
+  copy(block.position, first, count, state.position), copy(block.velocity, first, count, state.velocity);
+  for (std::size_t k = 0; k < count; ++k) {
+    begin.memory.held[first + k] = block.answers[k] == 1 ? 1 : 0;
+    report.work += block.work[k];
+  }
+}
+
+/// The particles inside an obstacle, with its surface there; returns their number.
+int ObstacleContact::find_inside(std::size_t obstacle, const ClothSystem& system, const Piece& piece,
+                                 TouchBlock& block) const {
+  int number = 0;
+  std::fill_n(block.touched, TouchBlock::size, 0.0), std::fill_n(block.normal_load, TouchBlock::size, 0.0);
+  for (std::size_t k = 0; k < piece.count; ++k) {
+    if (!is_near(piece.nearest[k]) || system.pinned[piece.first + k]) continue;
+    const auto surface = penetration(obstacles_[obstacle], get(block.position, k));
+    if (!surface) continue;
+    block.touched[k] = 1, ++number;
+    set(block.point, k, surface->point), set(block.normal, k, surface->normal);
+  }
+  return number;
+}
+
+/// The same of a step that was solved with contact.
+int ObstacleContact::find_held(std::size_t obstacle, const Piece& piece, TouchBlock& block) {
+  int number = 0;
+  std::fill_n(block.touched, TouchBlock::size, 0.0);
+  for (const HeldParticle& held : piece.held) {
+    const std::size_t k = held.particle - piece.first;
+    if (held.obstacle != obstacle || block.touched[k] != 0) continue;
+    block.touched[k] = 1, ++number;
+    set(block.point, k, get(block.position, k)), set(block.normal, k, held.normal);
+    block.normal_load[k] = held.normal_load;
+  }
+  return number;
+}
+
+/// Moves particles to their constrained positions. Their velocities change by the displacement along the
+/// surfaces that hold them; the normal velocities stay.
+void ObstacleContact::move_to_constrained(const ClothSystem& system, const ConstrainedStep& constrained,
+                                          const Piece& piece, TouchBlock& block) {
+  auto held = piece.held.begin();
+  for (std::size_t k = 0; k < piece.count; ++k) {
+    const std::size_t i = piece.first + k;
+    if (system.pinned[i]) continue;
+    Vec3 moved = constrained.position[i] - get(block.position, k);
+    for (; held != piece.held.end() && held->particle == i; ++held)
+      moved -= held->normal.dot(moved) * held->normal;
+    set(block.position, k, constrained.position[i]);
+    set(block.velocity, k, get(block.velocity, k) + moved / constrained.weight);
+  }
 }
 
 bool ObstacleContact::is_inside(const ClothSystem& system, const Vec3Field& position) const {
@@ -246,7 +256,7 @@ bool ObstacleContact::touches(const ClothSystem& system, const ClothState& state
     });
   };
   for (std::size_t i = 0; i < nearest.size(); ++i)
-    if (nearest[i] <= 0 && !system.pinned[i] && is_touched(i)) return true;
+    if (is_near(nearest[i]) && !system.pinned[i] && is_touched(i)) return true;
   return false;
 }
 

@@ -10,6 +10,7 @@
 
 #include "cloth/cloth_system.h"
 #include "contact/contact_report.h"
+#include "contact/touch_kernels.h"
 #include "scene/obstacle_shape.h"
 
 namespace cloth {
@@ -18,12 +19,6 @@ namespace cloth {
 /// outward normal n: response "coulomb" replaces v_n by -restitution v_n and reduces the tangential part by
 /// up to friction |change of v_n|; "reflect" gives friction (v - 2 v_n n) (report, Eq. (17)).
 Vec3 contact_velocity(const Obstacle& obstacle, const Vec3& normal, const Vec3& velocity);
-
-/// The same with the rebound restitution * `approach` (m/s): only this part of the inward speed is an impact;
-/// the rest comes from a load within the step, to which restitution does not apply. `normal_load` (m/s) is
-/// added to the normal change of velocity that bounds friction.
-Vec3 contact_velocity(const Obstacle& obstacle, const Vec3& normal, const Vec3& velocity, double approach,
-                      double normal_load = 0);
 
 /// The obstacle with its surface moved outward by `length` (m).
 Obstacle grown(Obstacle obstacle, double length);
@@ -87,24 +82,19 @@ class ObstacleContact {
   void append_marks(const Vec3Field& position, std::vector<ContactMark>& marks) const;
 
  private:
-  /// A free particle while contact goes through the obstacles.
-  struct Particle {
-    std::size_t index = 0;
-    Vec3 integrated_position, integrated_velocity;  ///< m, m/s, by the integrator
-    std::span<const HeldParticle> held;             ///< the surfaces that it lies on
-    Vec3 before{0, 0, 0};  ///< m/s, at the beginning of the step, or after the last obstacle
+  /// Some particles that follow each other, as many as a TouchBlock has.
+  struct Piece {
+    std::size_t first = 0, count = 0;
+    std::span<const double> nearest;     ///< of each, see nearest_of()
+    std::span<const HeldParticle> held;  ///< the surfaces that they lie on, in order of the particles
   };
-  struct Touched {
-    SurfacePoint surface;
-    double normal_load = 0;  ///< N s
-  };
-  static void move_to_constrained(const Particle& particle, const ConstrainedStep& constrained,
-                                  ClothState& state);
-  std::optional<Touched> touched(std::size_t obstacle, const Particle& particle, const Vec3& position,
-                                 bool constrained) const;
-  bool touch(const ClothSystem& system, Particle& particle, const ContactBegin& begin, ClothState& state,
-             ContactReport& report) const;
-  double approach_of(const Particle& particle, const Vec3& normal, const ContactBegin& begin) const;
+  void respond(const ClothSystem& system, const ContactBegin& begin, const Piece& piece, TouchBlock& block,
+               ClothState& state, ContactReport& report) const;
+  int find_inside(std::size_t obstacle, const ClothSystem& system, const Piece& piece,
+                  TouchBlock& block) const;
+  static int find_held(std::size_t obstacle, const Piece& piece, TouchBlock& block);
+  static void move_to_constrained(const ClothSystem& system, const ConstrainedStep& constrained,
+                                  const Piece& piece, TouchBlock& block);
 
   std::vector<Obstacle> obstacles_;
   double gravity_ = 0;  ///< m/s^2

@@ -4,6 +4,9 @@
 
 #include <cmath>
 
+#include "kernels/instruction_set.h"
+#include "support/random.h"
+
 namespace cloth::test::contact_solver_test {
 namespace {
 
@@ -173,6 +176,41 @@ TEST(ContactSolver, LeavesOutContactsThatAreFarUntilOthersBringThemNear) {
   for (std::size_t i = 0; i < count; ++i) EXPECT_LE((all[i] - few[i]).norm(), 1e-10) << i;
   for (std::size_t c = 0; c < contacts.size(); ++c)
     EXPECT_NEAR(of_all[c].normal_impulse, of_few[c].normal_impulse, 1e-10) << c;
+}
+
+/// Contacts of up to four particles each, some of them pinned, of some particles many.
+TEST(ContactSolver, GivesTheSameBitsOnEveryInstructionSet) {
+  constexpr int particles = 60, count = 300;
+  Random random;
+  std::vector<double> inverse_mass;
+  for (int i = 0; i < particles; ++i) inverse_mass.push_back(i % 7 == 0 ? 0 : random.uniform(1, 100));
+  const Vec3Field start = random.field(particles, 1);
+  std::vector<ContactConstraint> contacts;
+  for (int c = 0; c < count; ++c) {
+    ContactConstraint contact;
+    contact.count = random.integer(1, 4);
+    const int first = random.integer(0, particles - 1);
+    for (int k = 0; k < contact.count; ++k) {
+      contact.particle[at(k)] = (first + 3 * k) % particles;
+      contact.weight[at(k)] = random.uniform(-1, 1);
+    }
+    contact.normal = random.vector(1).normalized(), contact.rest = random.vector(1);
+    contact.bound = random.uniform(-1, 1), contact.friction = random.uniform(0, 1);
+    contact.mobility = mobility_of(contact, inverse_mass);
+    contacts.push_back(contact);
+  }
+  std::optional<Vec3Field> first;
+  for (const InstructionSet set : supported_instruction_sets()) {
+    set_instruction_set(set);
+    std::vector<ContactConstraint> own = contacts;
+    Vec3Field value = start;
+    ContactSolver().solve(own, inverse_mass, {.sweeps = 50, .tolerance = 1e-9}, value);
+    if (!first) first = value;
+    for (std::size_t i = 0; i < particles; ++i)
+      EXPECT_EQ(Vec3(value[i]), Vec3((*first)[i])) << name_of(set) << ", particle " << i;
+  }
+  set_instruction_set(std::nullopt);
+  EXPECT_GT(((*first)[1] - start[1]).norm(), 0.01) << "nothing happens";
 }
 
 }  // namespace

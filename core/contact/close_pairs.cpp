@@ -218,7 +218,7 @@ template <class Motion>
 void ClosePairs::separate_all(const PairQuery& now, const std::vector<FeaturePair>& candidates,
                               const Motion& motion) {
   const int shares =
-      in_shares(team_, candidates.size(), least_pairs, [&](int share, std::size_t begin, std::size_t end) {
+      shares_.run(team_, candidates.size(), least_pairs, [&](int share, std::size_t begin, std::size_t end) {
         Part& part = parts_[at(share)];
         part.pairs.clear(), part.clear.clear();
         for (std::size_t k = begin; k < end; ++k) {

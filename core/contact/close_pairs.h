@@ -8,6 +8,7 @@
 #pragma once
 
 #include "contact/near_pairs.h"
+#include "kernels/balanced_shares.h"
 
 namespace cloth {
 
@@ -94,6 +95,7 @@ class ClosePairs {
   const std::vector<ObstacleBody>& bodies_;
   PairSearch search_;
   WorkerTeam* team_ = nullptr;
+  BalancedShares shares_;
   std::vector<Part> parts_{1};  ///< of each thread
 
   std::vector<double> range_;           ///< m, bound of each particle's displacement in this round

@@ -241,11 +241,8 @@ void ContinuousContact::solve_target(const ClothSystem& system, const Vec3Field&
     constraint_pair_.push_back(k);
   }
   order_by_particles();
-  constraints_.resize(constraint_pair_.size());
-  in_shares(team_, constraints_.size(), least_pairs, [&](int, std::size_t begin, std::size_t end) {
-    for (std::size_t c = begin; c < end; ++c)
-      constraints_[c] = constraint_of(constraint_pair_[c], system, from);
-  });
+  constraints_.clear();
+  for (const std::size_t pair : constraint_pair_) constraints_.push_back(constraint_of(pair, system, from));
   for (const ContactConstraint& contact : constraints_)
     apply_impulses(contact, system.inverse_mass, target_position_);
   double last_missing = infinity;
@@ -282,16 +279,15 @@ void ContinuousContact::keep_touches(double step) {
         touches_[at(memory.touch)].contact.normal_impulse = 0;
       continue;
     }
-    if (memory.touch < 0) {
+    const std::size_t pair = constraint_pair_[c];
+    Touch touch{contact, pairs_[pair].obstacle, velocity_of_far_side(pair, step), substep_};
+    touch.contact.friction = friction_of(pairs_[pair]);
+    if (memory.touch >= 0) {
+      touches_[at(memory.touch)] = touch;
+    } else {
       memory.touch = static_cast<int>(touches_.size());
-      touches_.emplace_back();
+      touches_.push_back(touch);
     }
-    Touch& touch = touches_[at(memory.touch)];
-    touch.contact = contact;
-    touch.contact.friction = friction_of(pairs_[constraint_pair_[c]]);
-    touch.substep = substep_;
-    touch.obstacle = pairs_[constraint_pair_[c]].obstacle;
-    touch.velocity = velocity_of_far_side(constraint_pair_[c], step);
   }
 }
 

@@ -8,13 +8,18 @@
 
 namespace cloth {
 
+/// As many as there are threads; fewer where each has not `least` items. Without a team (null) there is one.
+inline int number_of_shares(const WorkerTeam* team, std::size_t count, std::size_t least) {
+  const std::size_t most = team ? static_cast<std::size_t>(team->size()) : 1;
+  return static_cast<int>(std::clamp<std::size_t>(count / std::max<std::size_t>(1, least), 1, most));
+}
+
 /// Divides [0, count) into consecutive shares of at least `least` items, one for each thread at most, and
 /// calls job(share, begin, end) for each. Without a team (null) there is one share. Returns the number of
 /// shares. `job` must not throw.
 template <class Job>
 int in_shares(WorkerTeam* team, std::size_t count, std::size_t least, const Job& job) {
-  const std::size_t most = team ? static_cast<std::size_t>(team->size()) : 1;
-  const std::size_t shares = std::clamp<std::size_t>(count / std::max<std::size_t>(1, least), 1, most);
+  const auto shares = static_cast<std::size_t>(number_of_shares(team, count, least));
   const auto share_of = [&](int share) {
     const auto k = static_cast<std::size_t>(share);
     job(share, count * k / shares, count * (k + 1) / shares);

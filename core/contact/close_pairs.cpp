@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "contact/obstacle_body.h"
-#include "contact/separations.h"
 #include "geometry/at.h"
 #include "kernels/in_shares.h"
 
@@ -14,8 +13,7 @@ namespace {
 constexpr double ways_ahead = 6;
 /// Of the reach, how much further at most, and at least: for rounding and small motions.
 constexpr double most_ahead = 1.5, least_ahead = 0.15;
-constexpr double of_rounding = 1e-9;        ///< of a distance
-constexpr double of_closest_points = 1e-6;  ///< by which a gap may be less than the distance
+constexpr double of_rounding = 1e-9;  ///< of a distance
 
 double furthest_reach(const SweptBounds& swept) {
   return std::max(swept.reach, swept.own_reach);
@@ -96,7 +94,7 @@ void ClosePairs::collect_candidates(const PairQuery& now) {
 /// Those that cannot come within their reach while the candidates hold.
 void ClosePairs::drop_far_candidates() {
   spent_ = cached_range_;
-  spread_spent();
+  spread(spent_);
   std::size_t kept = 0;
   for (std::size_t k = 0; k < cached_.size(); ++k) {
     const Sides sides = cached_sides_[k];
@@ -130,8 +128,9 @@ ClosePairs::Sides ClosePairs::sides_of(const FeaturePair& pair) const {
   return {none, none};
 }
 
-/// The features of the candidates: of some scenes none has edges or faces.
-void ClosePairs::add_spent() {
+/// The features of the candidates: of some scenes none has edges or faces. Returns whether some candidate may
+/// be within its reach.
+bool ClosePairs::add_spent() {
   spent_.clear();
   most_spent_ = 0;
   for (std::size_t i = 0; i < range_.size(); ++i) {
@@ -141,45 +140,43 @@ void ClosePairs::add_spent() {
   most_spent_ *= 2;
   if (std::none_of(cached_room_.begin(), cached_room_.end(),
                    [&](double room) { return room <= most_spent_; }))
-    return;
-  spread_spent();
+    return false;
+  spread(spent_);
+  return true;
 }
 
-/// From the vertices to edges and faces.
-void ClosePairs::spread_spent() {
-  for (const auto& [a, b] : cloth_.edges) spent_.push_back(std::max(spent_[at(a)], spent_[at(b)]));
+void ClosePairs::find_ranges() {
+  range_of_feature_ = range_;
+  spread(range_of_feature_);
+}
+
+/// From the vertices to edges and faces; and 0.
+void ClosePairs::spread(std::vector<double>& of_features) const {
+  for (const auto& [a, b] : cloth_.edges)
+    of_features.push_back(std::max(of_features[at(a)], of_features[at(b)]));
   for (const auto& [a, b, c] : cloth_.triangles)
-    spent_.push_back(std::max({spent_[at(a)], spent_[at(b)], spent_[at(c)]}));
-  spent_.push_back(0);
+    of_features.push_back(std::max({of_features[at(a)], of_features[at(b)], of_features[at(c)]}));
+  of_features.push_back(0);
 }
 
-/// m, bound of what the motion since the candidates were found, and in this round, takes from the distance of
-/// one; negative where that leaves it beyond its reach.
-double ClosePairs::spent_by(std::size_t k) const {
+/// Whether the motion since the candidates were found, and in this round, leaves one beyond its reach.
+bool ClosePairs::is_beyond(std::size_t k) const {
   const double room = cached_room_[k];
-  if (room > most_spent_) return -1;
-  const double spent = spent_[at(cached_sides_[k].near)] + spent_[at(cached_sides_[k].far)];
-  return room > spent ? -1 : spent;
+  return room > most_spent_ || room > spent_[at(cached_sides_[k].near)] + spent_[at(cached_sides_[k].far)];
 }
 
 /// m, bound of what this round's motion takes from the distance of a pair.
-double ClosePairs::motion_of(const FeaturePair& pair) const {
-  const PairParticles all = particles_of(pair, cloth_);
-  double near = 0, far = pair.obstacle == FeaturePair::cloth_itself ? 0 : obstacle_paths_[at(pair.obstacle)];
-  for (int j = 0; j < all.count; ++j) {
-    double& range = j < all.near_count ? near : far;
-    range = std::max(range, range_[at(all.particle[at(j)])]);
-  }
-  return near + far;
+double ClosePairs::motion_of(const FeaturePair& pair, const Sides& sides) const {
+  const double far = pair.obstacle == FeaturePair::cloth_itself ? 0 : obstacle_paths_[at(pair.obstacle)];
+  return range_of_feature_[at(sides.near)] + range_of_feature_[at(sides.far)] + far;
 }
 
 /// A pair cannot come within its reach where the displacements are too short, or lead along or away.
-ClosePairs::Role ClosePairs::role_of(const FeaturePair& pair, const Separation& s,
+ClosePairs::Role ClosePairs::role_of(const FeaturePair& pair, const Separation& s, double motion,
                                      const SweptBounds& swept) const {
   const double reach = reach_of(pair, swept);
   const bool is_within = s.distance <= reach && s.gap() <= reach, holds = is_contact(s, reach);
   if (is_within && holds) return Role::acts;
-  const double motion = motion_of(pair);
   if (s.distance > reach + motion) return Role::none;
   const Role role = !holds && s.gap() > 2 * motion ? Role::waits : Role::acts;
   if (is_within || s.normal.isZero(0)) return role;
@@ -194,16 +191,19 @@ ClosePairs::Role ClosePairs::role_of(const FeaturePair& pair, const Separation& 
 void ClosePairs::separate_part(const PairQuery& now, Part& part) const {
   std::vector<FeaturePair>& pairs = part.pairs;
   if (part.every.size() < pairs.size()) part.every.resize(pairs.size());
-  part.left_out.resize(pairs.size());
+  part.needs.resize(pairs.size());
   part.separations.clear(), part.waiting.clear();
   const PairSetting setting{cloth_, now.position, bodies_, now.poses, now.placed};
   PairBatch(setting).separate(pairs, {near_factor * now.swept.reach, near_factor * now.swept.own_reach},
-                              {part.clear, {now.swept.reach, now.swept.own_reach}}, part.every.data(),
-                              part.left_out.data());
+                              {part.motion, {now.swept.reach, now.swept.own_reach}}, part.every.data(),
+                              part.needs.data());
   std::size_t kept = 0;
   for (std::size_t k = 0; k < pairs.size(); ++k) {
+    if (part.needs[k] == PairNeed::apart) continue;
     const FeaturePair pair = pairs[k];
-    const Role role = part.left_out[k] != 0 ? Role::waits : role_of(pair, part.every[k], now.swept);
+    const Role role = part.needs[k] == PairNeed::waits
+                          ? Role::waits
+                          : role_of(pair, part.every[k], part.motion[k], now.swept);
     if (role == Role::waits) part.waiting.push_back({pair, kept});
     if (role != Role::acts) continue;
     pairs[kept++] = pair;
@@ -212,20 +212,19 @@ void ClosePairs::separate_part(const PairQuery& now, Part& part) const {
   pairs.resize(kept);
 }
 
-/// motion(k): m, at least motion_of() of a candidate; negative where its role is none. The result is that of
-/// the first part.
-template <class Motion>
+/// Of the candidates, with the sides of each, those that are not beyond(k). The result is that of the first
+/// part.
+template <class Beyond, class SidesOf>
 void ClosePairs::separate_all(const PairQuery& now, const std::vector<FeaturePair>& candidates,
-                              const Motion& motion) {
+                              const SidesOf& sides_of, const Beyond& beyond) {
   const int shares =
       shares_.run(team_, candidates.size(), least_pairs, [&](int share, std::size_t begin, std::size_t end) {
         Part& part = parts_[at(share)];
-        part.pairs.clear(), part.clear.clear();
+        part.pairs.clear(), part.motion.clear();
         for (std::size_t k = begin; k < end; ++k) {
-          const double most = motion(k);
-          if (most < 0) continue;
+          if (beyond(k)) continue;
           part.pairs.push_back(candidates[k]);
-          part.clear.push_back(2 * (1 + of_closest_points) * most);
+          part.motion.push_back(motion_of(candidates[k], sides_of(k)));
         }
         separate_part(now, part);
       });
@@ -244,14 +243,18 @@ void ClosePairs::find(const PairQuery& now, std::vector<FeaturePair>& pairs,
   measure(now);
   if (longest_ > furthest_reach(now.swept) || !all_at_rest(now)) {
     search_.find(now.swept, now.paths, found_);
-    separate_all(now, found_, [&](std::size_t k) { return motion_of(found_[k]); });
+    find_ranges();
+    separate_all(
+        now, found_, [&](std::size_t k) { return sides_of(found_[k]); }, [](std::size_t) { return false; });
   } else {
     if (cached_position_.size() == now.position.size())
       for (std::size_t i = 0; i < moved_.size(); ++i)
         moved_[i] = (now.position[i] - cached_position_[i]).norm();
     if (!holds(now)) collect_candidates(now);
-    add_spent();
-    separate_all(now, cached_, [&](std::size_t k) { return spent_by(k); });
+    if (add_spent()) find_ranges();
+    separate_all(
+        now, cached_, [&](std::size_t k) { return cached_sides_[k]; },
+        [&](std::size_t k) { return is_beyond(k); });
   }
   pairs.swap(parts_[0].pairs), separations.swap(parts_[0].separations), waiting.swap(parts_[0].waiting);
 }

@@ -8,6 +8,7 @@
 #pragma once
 
 #include "contact/near_pairs.h"
+#include "contact/separations.h"
 #include "kernels/balanced_shares.h"
 
 namespace cloth {
@@ -70,8 +71,8 @@ class ClosePairs {
     std::vector<Separation> separations;
     // scratch, of each pair before those that do not act are dropped
     std::vector<Separation> every;  ///< may be longer
-    std::vector<double> clear;      ///< m, see PairBatch
-    std::vector<std::uint8_t> left_out;
+    std::vector<double> motion;     ///< m, see motion_of()
+    std::vector<PairNeed> needs;
   };
   enum class Role { none, waits, acts };
 
@@ -82,14 +83,17 @@ class ClosePairs {
   double reach_of(const FeaturePair& pair, const SweptBounds& swept) const;
   Sides sides_of(const FeaturePair& pair) const;
   void drop_far_candidates();
-  void add_spent();
-  void spread_spent();
-  double spent_by(std::size_t kept) const;
-  double motion_of(const FeaturePair& pair) const;
-  Role role_of(const FeaturePair& pair, const Separation& separation, const SweptBounds& swept) const;
+  bool add_spent();
+  void find_ranges();
+  void spread(std::vector<double>& of_features) const;
+  bool is_beyond(std::size_t kept) const;
+  double motion_of(const FeaturePair& pair, const Sides& sides) const;
+  Role role_of(const FeaturePair& pair, const Separation& separation, double motion,
+               const SweptBounds& swept) const;
   void separate_part(const PairQuery& now, Part& part) const;
-  template <class Motion>
-  void separate_all(const PairQuery& now, const std::vector<FeaturePair>& candidates, const Motion& motion);
+  template <class Beyond, class SidesOf>
+  void separate_all(const PairQuery& now, const std::vector<FeaturePair>& candidates, const SidesOf& sides_of,
+                    const Beyond& beyond);
 
   const Surface& cloth_;
   const std::vector<ObstacleBody>& bodies_;
@@ -98,11 +102,12 @@ class ClosePairs {
   BalancedShares shares_;
   std::vector<Part> parts_{1};  ///< of each thread
 
-  std::vector<double> range_;           ///< m, bound of each particle's displacement in this round
-  std::vector<double> obstacle_paths_;  ///< m, of each: bound of its points' displacement in this substep
-  std::vector<double> moved_;           ///< m, displacement of each particle since the candidates were found
-  double longest_ = 0;                  ///< m, longest of the particles' displacements
-  std::vector<FeaturePair> found_;      ///< candidates that are not cached
+  std::vector<double> range_;             ///< m, bound of each particle's displacement in this round
+  std::vector<double> range_of_feature_;  ///< m, of each vertex, edge and face of the cloth, at most; and 0
+  std::vector<double> obstacle_paths_;    ///< m, of each: bound of its points' displacement in this substep
+  std::vector<double> moved_;       ///< m, displacement of each particle since the candidates were found
+  double longest_ = 0;              ///< m, longest of the particles' displacements
+  std::vector<FeaturePair> found_;  ///< candidates that are not cached
 
   std::vector<FeaturePair> cached_;  ///< candidates
   std::vector<Sides> cached_sides_;  ///< of each

@@ -20,7 +20,7 @@ constexpr double skin_part = 0.35;  ///< of a mean edge, see PairSearch
 constexpr double solver_tolerance_part = 1e-6;
 constexpr int solver_sweeps = 20;
 /// Of the thickness: contacts that their particles would keep by more take part where others violate them.
-constexpr double beside_part = 0.1;
+constexpr double beside_part = 0.003;
 /// Stacks of layers need more: sweeps continue while some pair misses more than `missing_part` of its
 /// thickness and that decreases.
 constexpr double missing_part = 0.03, less_missing = 0.9;

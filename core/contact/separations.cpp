@@ -6,6 +6,8 @@
 namespace cloth {
 namespace {
 
+constexpr double of_closest_points = 1e-6;  ///< by which a gap may be less than the distance
+
 Vec3 point_in(const ClosestBlock& block, std::size_t which, std::size_t k) {
   return {block.point[which][0][k], block.point[which][1][k], block.point[which][2][k]};
 }
@@ -91,26 +93,27 @@ void PairBatch::find_distances(std::span<const FeaturePair> pairs, double* dista
 }
 
 void PairBatch::separate(std::span<const FeaturePair> pairs, const NearDistances& within,
-                         const NeedlessDistances& needless, Separation* separations, std::uint8_t* left_out) {
-  const auto is_needless = [&](std::size_t k, const auto& closest) {
+                         const PairMotion& motion, Separation* separations, PairNeed* needs) {
+  const auto need_of = [&](std::size_t k, const auto& closest) {
     const FeaturePair& pair = pairs[k];
-    if constexpr (std::is_same_v<std::decay_t<decltype(closest)>, SegmentSegment>) {
-      if (is_in_charge(closest)) return false;
-    } else {
-      if (is_in_charge(pair, closest, setting_)) return false;
-    }
-    const double distance = distance_of(pair, closest.squared_distance, setting_);
-    return needless.least[k] < distance && distance < needless.most(pair);
+    const double distance = distance_of(pair, closest.squared_distance, setting_), reach = motion.reach(pair);
+    if (distance > reach + motion.most[k]) return PairNeed::apart;
+    if (!(distance < reach && distance > 2 * (1 + of_closest_points) * motion.most[k]))
+      return PairNeed::separation;
+    if constexpr (std::is_same_v<std::decay_t<decltype(closest)>, SegmentSegment>)
+      return is_in_charge(closest) ? PairNeed::separation : PairNeed::waits;
+    else
+      return is_in_charge(pair, closest, setting_) ? PairNeed::separation : PairNeed::waits;
   };
   go_through(
       pairs,
       [&](std::size_t k, const FeaturePoints& points, const auto& closest) {
-        left_out[k] = is_needless(k, closest) ? 1 : 0;
-        if (left_out[k] == 0)
+        needs[k] = need_of(k, closest);
+        if (needs[k] == PairNeed::separation)
           separations[k] = separation_of(pairs[k], points, closest, setting_, within(pairs[k]));
       },
       [&](std::size_t k) {
-        left_out[k] = 0;
+        needs[k] = PairNeed::separation;
         separations[k] = cloth::separate(pairs[k], setting_, within(pairs[k]));
       });
 }

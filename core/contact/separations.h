@@ -18,11 +18,16 @@ struct NearDistances {
   }
 };
 
-/// Distances between these two need no separation where a pair cannot be `nearest`.
-struct NeedlessDistances {
-  std::span<const double> least;  ///< m, of each pair
-  NearDistances most;
+/// What a round's motion can take from the distance of each pair, and up to which distance a pair matters, in
+/// m.
+struct PairMotion {
+  std::span<const double> most;
+  NearDistances reach;
 };
+
+/// Pairs that cannot come within their reach are `apart`; within it, those `wait` that cannot be `nearest`
+/// and are further apart than twice what the motion can take.
+enum class PairNeed : std::uint8_t { separation, waits, apart };
 
 /// Of one thread. The arguments must outlive it.
 class PairBatch {
@@ -35,9 +40,9 @@ class PairBatch {
   /// One for each pair. Those nearer than `within` are asked whether they are nearest, see separate().
   void separate(std::span<const FeaturePair> pairs, const NearDistances& within, Separation* separations);
 
-  /// The same but for needless ones. left_out[k]: whether a pair has no separation therefore.
-  void separate(std::span<const FeaturePair> pairs, const NearDistances& within,
-                const NeedlessDistances& needless, Separation* separations, std::uint8_t* left_out);
+  /// The same for those that need it, as needs[k] says then.
+  void separate(std::span<const FeaturePair> pairs, const NearDistances& within, const PairMotion& motion,
+                Separation* separations, PairNeed* needs);
 
  private:
   struct Waiting {

@@ -72,32 +72,32 @@ TEST_F(EveryInstructionSet, SeparatesManyPairsToTheBitAsEachAlone) {
   EXPECT_GT(nearest, 1000);
 }
 
-TEST_F(EveryInstructionSet, LeavesOutOnlyPairsThatAreNotNearestAndAsFarApartAsAsked) {
-  constexpr NearDistances within{10, 10}, most{0.5, 0.4};
-  int left_out = 0, nearest = 0;
+TEST_F(EveryInstructionSet, LeavesOutOnlyPairsThatCannotComeNearOrAreNotNearest) {
+  constexpr NearDistances within{10, 10}, reach{0.5, 0.4};
+  int apart = 0, waiting = 0, nearest = 0;
   for_random_settings([&](const PairSetting& setting, const std::vector<FeaturePair>& pairs) {
     Random random;
-    std::vector<double> least;
-    for (std::size_t k = 0; k < pairs.size(); ++k) least.push_back(random.uniform(0, 0.5));
+    std::vector<double> motion;
+    for (std::size_t k = 0; k < pairs.size(); ++k) motion.push_back(random.uniform(0, 0.25));
     std::vector<Separation> all(pairs.size());
-    std::vector<std::uint8_t> is_left_out(pairs.size(), 2);
-    PairBatch(setting).separate(pairs, within, {least, most}, all.data(), is_left_out.data());
+    std::vector<PairNeed> needs(pairs.size());
+    PairBatch(setting).separate(pairs, within, {motion, reach}, all.data(), needs.data());
     for (std::size_t k = 0; k < pairs.size(); ++k) {
       SCOPED_TRACE(testing::Message() << "pair " << k << " of kind " << static_cast<int>(pairs[k].kind));
       const Separation alone = separate(pairs[k], setting, within(pairs[k]));
-      if (is_left_out[k] == 1) {
-        EXPECT_GT(alone.distance, least[k]);
-        EXPECT_LT(alone.distance, most(pairs[k]));
+      if (needs[k] == PairNeed::separation) expect_same(all[k], alone);
+      if (needs[k] == PairNeed::apart) EXPECT_GT(alone.distance, reach(pairs[k]) + motion[k]);
+      if (needs[k] == PairNeed::waits) {
+        EXPECT_GT(alone.distance, 2 * motion[k]);
+        EXPECT_LT(alone.distance, reach(pairs[k]));
         EXPECT_FALSE(alone.nearest);
-      } else {
-        EXPECT_EQ(is_left_out[k], 0);
-        expect_same(all[k], alone);
       }
       if (::testing::Test::HasFailure()) return;
-      left_out += is_left_out[k], nearest += alone.nearest;
+      apart += needs[k] == PairNeed::apart, waiting += needs[k] == PairNeed::waits, nearest += alone.nearest;
     }
   });
-  EXPECT_GT(left_out, 10000);
+  EXPECT_GT(apart, 1000);
+  EXPECT_GT(waiting, 10000);
   EXPECT_GT(nearest, 1000);
 }
 

@@ -34,19 +34,22 @@ void clear(Lane lane) {
 
 void write(Lane lane, const ContactConstraint& contact) {
   const int k = lane.of;
-  for (int axis = 0; axis < 3; ++axis) {
+  for (int axis = 0; axis < 3; ++axis)
     lane.four.normal[axis][k] = contact.normal[axis], lane.four.rest[axis][k] = contact.rest[axis];
-    lane.four.friction_impulse[axis][k] = contact.friction_impulse[axis];
-  }
   lane.four.bound[k] = contact.bound, lane.four.rest_level[k] = contact.normal.dot(contact.rest);
-  lane.four.inverse_mobility[k] = 1 / contact.mobility;
-  lane.four.friction[k] = contact.friction, lane.four.normal_impulse[k] = contact.normal_impulse;
+  lane.four.inverse_mobility[k] = 1 / contact.mobility, lane.four.friction[k] = contact.friction;
 }
 
-void read(const Lane& lane, ContactConstraint& contact) {
-  const int k = lane.of;
-  contact.normal_impulse = lane.four.normal_impulse[k];
-  for (int axis = 0; axis < 3; ++axis) contact.friction_impulse[axis] = lane.four.friction_impulse[axis][k];
+void write_impulses(Lane lane, const ContactConstraint& contact) {
+  lane.four.normal_impulse[lane.of] = contact.normal_impulse;
+  for (int axis = 0; axis < 3; ++axis)
+    lane.four.friction_impulse[axis][lane.of] = contact.friction_impulse[axis];
+}
+
+void read_impulses(const Lane& lane, ContactConstraint& contact) {
+  contact.normal_impulse = lane.four.normal_impulse[lane.of];
+  for (int axis = 0; axis < 3; ++axis)
+    contact.friction_impulse[axis] = lane.four.friction_impulse[axis][lane.of];
 }
 
 }  // namespace
@@ -55,18 +58,16 @@ void ContactBatches::clear(std::size_t particles) {
   rows_.clear();
   slot_.resize(particles, -1);
   for (std::size_t k = ContactBatch::spare; k < particle_.size(); ++k) slot_[at(particle_[k])] = -1;
-  particle_.assign(ContactBatch::spare, -1), values_.assign(ContactBatch::spare, {});
+  particle_.assign(ContactBatch::spare, -1);
   colours_of_.assign(ContactBatch::spare, 0), colour_after_.assign(ContactBatch::spare, 0);
   next_place_.clear();
 }
 
-int ContactBatches::slot_of(int particle, const Vec3Field& value) {
+int ContactBatches::slot_of(int particle) {
   int& slot = slot_[at(particle)];
   if (slot < 0) {
     slot = static_cast<int>(particle_.size());
-    const Vec3 v = value[at(particle)];
     particle_.push_back(particle), colours_of_.push_back(0), colour_after_.push_back(0);
-    values_.push_back({{v.x(), v.y(), v.z(), 0}});
   }
   return slot;
 }
@@ -92,10 +93,10 @@ int ContactBatches::take_colour(const Row& row, const ContactConstraint& contact
 }
 
 void ContactBatches::add(std::size_t number, const ContactConstraint& contact,
-                         const std::vector<double>& inverse_mass, const Vec3Field& value) {
+                         const std::vector<double>& inverse_mass) {
   Row& row = rows_.emplace_back(Row{number, 0, 0, {}});
   for (std::size_t k = 0; k < at(contact.count); ++k)
-    if (contact.weight[k] != 0) row.slot[k] = slot_of(contact.particle[k], value);
+    if (contact.weight[k] != 0) row.slot[k] = slot_of(contact.particle[k]);
   row.colour = take_colour(row, contact, inverse_mass);
   if (next_place_.size() <= at(row.colour)) next_place_.resize(at(row.colour) + 1, 0);
   ++next_place_[at(row.colour)];
@@ -146,29 +147,34 @@ int ContactBatches::sweep(const SolveLimits& limits) {
   std::iota(all_.begin(), all_.end(), 0);
   before_ = values_;
   moved_.assign(values_.size(), 1);
+  const int slots = static_cast<int>(values_.size()), few = slots / 2;
   bool is_whole = true;
-  for (int sweep = 1, whole = 0; sweep <= limits.sweeps; ++sweep) {
-    is_whole = is_whole || sweep - whole >= whole_sweep_after;
+  for (int sweep = 1, whole = 0, moved = slots; sweep <= limits.sweeps; ++sweep) {
+    is_whole = is_whole || moved > few || sweep - whole >= whole_sweep_after;
     if (is_whole)
       whole = sweep;
     else
       order_moved();
     const std::vector<int>& order = is_whole ? all_ : active_;
     kernels.relax(batches_.data(), order.data(), static_cast<int>(order.size()), values_.data());
-    const bool any =
-        kernels.note_moved(values_.data(), before_.data(), moved_.data(), static_cast<int>(values_.size()),
-                           limits.tolerance * limits.tolerance);
-    if (!any && is_whole) return sweep;
-    is_whole = !any;
+    moved = kernels.note_moved(values_.data(), before_.data(), moved_.data(), slots,
+                               limits.tolerance * limits.tolerance);
+    if (moved == 0 && is_whole) return sweep;
+    is_whole = moved == 0;
   }
   return limits.sweeps;
 }
 
-int ContactBatches::solve(std::span<ContactConstraint> contacts, const std::vector<double>& inverse_mass,
-                          const SolveLimits& limits, Vec3Field& value) {
-  arrange(contacts, inverse_mass);
+int ContactBatches::solve(std::span<ContactConstraint> contacts, const SolveLimits& limits,
+                          Vec3Field& value) {
+  values_.assign(particle_.size(), {});
+  for (std::size_t k = ContactBatch::spare; k < values_.size(); ++k) {
+    const Vec3 v = value[at(particle_[k])];
+    values_[k] = {{v.x(), v.y(), v.z(), 0}};
+  }
+  for (const Row& row : rows_) write_impulses(Lane(batches_, row.place), contacts[row.contact]);
   const int sweeps = sweep(limits);
-  for (const Row& row : rows_) read(Lane(batches_, row.place), contacts[row.contact]);
+  for (const Row& row : rows_) read_impulses(Lane(batches_, row.place), contacts[row.contact]);
   for (std::size_t k = ContactBatch::spare; k < values_.size(); ++k)
     value.set(at(particle_[k]), {values_[k].of[0], values_[k].of[1], values_[k].of[2]});
   return sweeps;

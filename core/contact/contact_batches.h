@@ -25,15 +25,16 @@ class ContactBatches {
  public:
   /// Without contacts, of so many particles.
   void clear(std::size_t particles);
-  bool is_empty() const { return rows_.empty(); }
   /// `number`: of the contact in the arguments of the others.
-  void add(std::size_t number, const ContactConstraint& contact, const std::vector<double>& inverse_mass,
-           const Vec3Field& value);
+  void add(std::size_t number, const ContactConstraint& contact, const std::vector<double>& inverse_mass);
+  /// After the last one.
+  void arrange(std::span<const ContactConstraint> contacts, const std::vector<double>& inverse_mass);
+  bool is_empty() const { return rows_.empty(); }
   /// Relaxes the contacts sweep by sweep. In and out: their impulses, and `value`, which contains their
-  /// effect. Contacts whose particles did not move in the last sweep are left out of the next, except in
-  /// every fourth sweep and in the one that ends the solve. Returns the sweeps.
-  int solve(std::span<ContactConstraint> contacts, const std::vector<double>& inverse_mass,
-            const SolveLimits& limits, Vec3Field& value);
+  /// effect. Of the contacts nothing else may have changed since arrange(). Where few particles moved in the
+  /// last sweep, contacts of none of them are left out of the next, except in every fourth sweep and in the
+  /// one that ends the solve. Returns the sweeps.
+  int solve(std::span<ContactConstraint> contacts, const SolveLimits& limits, Vec3Field& value);
 
  private:
   struct Row {
@@ -42,9 +43,8 @@ class ContactBatches {
     int place;  ///< in the batches, one after the other
     std::array<int, 4> slot;
   };
-  int slot_of(int particle, const Vec3Field& value);
+  int slot_of(int particle);
   int take_colour(const Row& row, const ContactConstraint& contact, const std::vector<double>& inverse_mass);
-  void arrange(std::span<const ContactConstraint> contacts, const std::vector<double>& inverse_mass);
   void order_moved();
   int sweep(const SolveLimits& limits);
 

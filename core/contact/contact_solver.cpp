@@ -34,22 +34,28 @@ void relax_alone(ContactConstraint& contact, const std::vector<double>& inverse_
 
 }  // namespace
 
-int ContactSolver::solve_chosen(std::span<ContactConstraint> contacts,
-                                const std::vector<double>& inverse_mass, const SolveLimits& limits,
-                                Vec3Field& value) {
+/// The chosen contacts.
+void ContactSolver::pack(std::span<const ContactConstraint> contacts,
+                         const std::vector<double>& inverse_mass) {
   contacts_of_.assign(inverse_mass.size(), 0);
   for (std::size_t c = 0; c < contacts.size(); ++c)
     if (is_chosen_[c])
       contacts[c].for_each([&](std::size_t i) { contacts_of_[i] += inverse_mass[i] > 0 ? 1 : 0; });
-  batches_.clear(inverse_mass.size());
+  alone_.clear(), batches_.clear(inverse_mass.size());
   for (std::size_t c = 0; c < contacts.size(); ++c) {
     if (!is_chosen_[c]) continue;
     if (contacts[c].any_of([&](std::size_t i) { return contacts_of_[i] > 1; }))
-      batches_.add(c, contacts[c], inverse_mass, value);
+      batches_.add(c, contacts[c], inverse_mass);
     else
-      relax_alone(contacts[c], inverse_mass, value);
+      alone_.push_back(c);
   }
-  return batches_.is_empty() ? 1 : batches_.solve(contacts, inverse_mass, limits, value);
+  batches_.arrange(contacts, inverse_mass);
+}
+
+int ContactSolver::solve_again(std::span<ContactConstraint> contacts, const std::vector<double>& inverse_mass,
+                               const SolveLimits& limits, Vec3Field& value) {
+  for (const std::size_t c : alone_) relax_alone(contacts[c], inverse_mass, value);
+  return batches_.is_empty() ? 1 : batches_.solve(contacts, limits, value);
 }
 
 int ContactSolver::solve(std::span<ContactConstraint> contacts, const std::vector<double>& inverse_mass,
@@ -65,8 +71,10 @@ int ContactSolver::solve(std::span<ContactConstraint> contacts, const std::vecto
     return any;
   };
   int sweeps = 0;
-  for (double within = limits.margin; choose(within); within = -limits.tolerance)
-    sweeps = solve_chosen(contacts, inverse_mass, limits, value);
+  for (double within = limits.margin; choose(within); within = -limits.tolerance) {
+    pack(contacts, inverse_mass);
+    sweeps = solve_again(contacts, inverse_mass, limits, value);
+  }
   return sweeps;
 }
 

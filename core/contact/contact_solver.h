@@ -20,14 +20,17 @@ class ContactSolver {
   /// skipped. Returns the sweeps.
   int solve(std::span<ContactConstraint> contacts, const std::vector<double>& inverse_mass,
             const SolveLimits& limits, Vec3Field& value);
+  /// The contacts of the last solve, of which nothing but the impulses may have changed, with other values.
+  int solve_again(std::span<ContactConstraint> contacts, const std::vector<double>& inverse_mass,
+                  const SolveLimits& limits, Vec3Field& value);
 
  private:
-  int solve_chosen(std::span<ContactConstraint> contacts, const std::vector<double>& inverse_mass,
-                   const SolveLimits& limits, Vec3Field& value);
+  void pack(std::span<const ContactConstraint> contacts, const std::vector<double>& inverse_mass);
 
   std::vector<std::uint8_t> is_chosen_;  ///< of each contact
   std::vector<int> contacts_of_;         ///< of each particle, number of chosen contacts that move it
-  ContactBatches batches_;
+  std::vector<std::size_t> alone_;       ///< chosen contacts whose particles have no other
+  ContactBatches batches_;               ///< the others that are chosen
 };
 
 }  // namespace cloth

@@ -137,16 +137,16 @@ void relax(ContactBatch* batches, const int* order, int count, ContactValue* val
   for (int k = 0; k < count; ++k) relax_batch(batches[order[k]], values);
 }
 
-bool note_moved(const ContactValue* values, ContactValue* before, unsigned char* moved, int count,
-                double squared_tolerance) {
-  bool any = false;
+int note_moved(const ContactValue* values, ContactValue* before, unsigned char* moved, int count,
+               double squared_tolerance) {
+  int number = 0;
   for (int k = 0; k < count; ++k) {
     const Vector now = load_four(values[k].of), change = now - load_four(before[k].of);
     store_four(before[k].of, now);
     moved[k] = product(change, change) > squared_tolerance;
-    any = any || moved[k];
+    number += moved[k];
   }
-  return any;
+  return number;
 }
 
 constexpr RelaxKernels table{relax, note_moved};

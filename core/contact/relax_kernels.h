@@ -38,9 +38,9 @@ struct RelaxKernels {
   void (*relax)(ContactBatch* batches, const int* order, int count, ContactValue* values);
 
   /// Sets moved[k] to whether values[k] differs from before[k] by more than the root of `squared_tolerance`,
-  /// and before[k] to values[k]. Returns whether any has moved.
-  bool (*note_moved)(const ContactValue* values, ContactValue* before, unsigned char* moved, int count,
-                     double squared_tolerance);
+  /// and before[k] to values[k]. Returns how many have moved.
+  int (*note_moved)(const ContactValue* values, ContactValue* before, unsigned char* moved, int count,
+                    double squared_tolerance);
 
   CLOTHLAB_KERNEL_TABLE(RelaxKernels)
 };

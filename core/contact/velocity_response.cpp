@@ -132,8 +132,7 @@ double ContinuousContact::approach_of(const Touch& touch, const ContactStep& ste
   const ContactConstraint& contact = touch.contact;
   const bool was_held = contact.any_of([&](std::size_t i) { return step.memory.held[i] != 0; });
   const double before = contact.normal.dot(contact.point(step.velocity_before) - touch.velocity);
-  const double mean =
-      contact.normal.dot(contact.point(approach_position_) - contact.rest) / step.times.step;
+  const double mean = contact.normal.dot(contact.point(approach_position_) - contact.rest) / step.times.step;
   const double approach = was_held ? before : mean;
   const double least = std::max(2 * gravity_ * step.times.step, 4 * (before - mean));
   return approach < -least ? approach : 0;
@@ -173,7 +172,8 @@ void ContinuousContact::solve_velocities(const ContactStep& step, ClothState& st
     step.integrator.update_velocity_for_damping(step.forces, step.times, motion_, state);
     free_velocity_ = state.velocity;
     apply_all_impulses(system, state.velocity);
-    solve_constraints(system, velocity_sweeps, state.velocity);
+    solver_.solve_again(constraints_, system.inverse_mass, {velocity_sweeps, velocity_tolerance},
+                        state.velocity);
   }
   work_.assign(position_.size(), 0.0);
   if (follows) find_start_change(step);

@@ -94,7 +94,7 @@ void ClosePairs::collect_candidates(const PairQuery& now) {
 /// Those that cannot come within their reach while the candidates hold.
 void ClosePairs::drop_far_candidates() {
   spent_ = cached_range_;
-  spread(spent_);
+  spread(cached_, spent_);
   std::size_t kept = 0;
   for (std::size_t k = 0; k < cached_.size(); ++k) {
     const Sides sides = cached_sides_[k];
@@ -110,8 +110,8 @@ double ClosePairs::reach_of(const FeaturePair& pair, const SweptBounds& swept) c
 }
 
 ClosePairs::Sides ClosePairs::sides_of(const FeaturePair& pair) const {
-  const int edges = static_cast<int>(range_.size()), faces = edges + static_cast<int>(cloth_.edges.size()),
-            none = faces + static_cast<int>(cloth_.triangles.size());
+  const int none = static_cast<int>(range_.size()), edges = none + 1,
+            faces = edges + static_cast<int>(cloth_.edges.size());
   const bool is_own = pair.obstacle == FeaturePair::cloth_itself;
   switch (pair.kind) {
     case PairKind::vertex_plane:
@@ -141,22 +141,25 @@ bool ClosePairs::add_spent() {
   if (std::none_of(cached_room_.begin(), cached_room_.end(),
                    [&](double room) { return room <= most_spent_; }))
     return false;
-  spread(spent_);
+  spread(cached_, spent_);
   return true;
 }
 
-void ClosePairs::find_ranges() {
+void ClosePairs::find_ranges(const std::vector<FeaturePair>& candidates) {
   range_of_feature_ = range_;
-  spread(range_of_feature_);
+  spread(candidates, range_of_feature_);
 }
 
-/// From the vertices to edges and faces; and 0.
-void ClosePairs::spread(std::vector<double>& of_features) const {
+/// From the vertices to edges and faces, which candidates of vertices with solids do not have.
+void ClosePairs::spread(const std::vector<FeaturePair>& candidates, std::vector<double>& of_features) const {
+  of_features.push_back(0);
+  if (std::all_of(candidates.begin(), candidates.end(),
+                  [](const FeaturePair& pair) { return shape_of(pair.kind) == PairShape::point_and_solid; }))
+    return;
   for (const auto& [a, b] : cloth_.edges)
     of_features.push_back(std::max(of_features[at(a)], of_features[at(b)]));
   for (const auto& [a, b, c] : cloth_.triangles)
     of_features.push_back(std::max({of_features[at(a)], of_features[at(b)], of_features[at(c)]}));
-  of_features.push_back(0);
 }
 
 /// Whether the motion since the candidates were found, and in this round, leaves one beyond its reach.
@@ -243,7 +246,7 @@ void ClosePairs::find(const PairQuery& now, std::vector<FeaturePair>& pairs,
   measure(now);
   if (longest_ > furthest_reach(now.swept) || !all_at_rest(now)) {
     search_.find(now.swept, now.paths, found_);
-    find_ranges();
+    find_ranges(found_);
     separate_all(
         now, found_, [&](std::size_t k) { return sides_of(found_[k]); }, [](std::size_t) { return false; });
   } else {
@@ -251,7 +254,7 @@ void ClosePairs::find(const PairQuery& now, std::vector<FeaturePair>& pairs,
       for (std::size_t i = 0; i < moved_.size(); ++i)
         moved_[i] = (now.position[i] - cached_position_[i]).norm();
     if (!holds(now)) collect_candidates(now);
-    if (add_spent()) find_ranges();
+    if (add_spent()) find_ranges(cached_);
     separate_all(
         now, cached_, [&](std::size_t k) { return cached_sides_[k]; },
         [&](std::size_t k) { return is_beyond(k); });

@@ -61,7 +61,7 @@ class ClosePairs {
   const PairSearch& search() const { return search_; }
 
  private:
-  /// The features of a cached candidate as places in `spent_`; an obstacle's is the last place.
+  /// The features of a cached candidate as places in `spent_`; an obstacle's is that of the 0.
   struct Sides {
     int near, far;
   };
@@ -84,8 +84,8 @@ class ClosePairs {
   Sides sides_of(const FeaturePair& pair) const;
   void drop_far_candidates();
   bool add_spent();
-  void find_ranges();
-  void spread(std::vector<double>& of_features) const;
+  void find_ranges(const std::vector<FeaturePair>& candidates);
+  void spread(const std::vector<FeaturePair>& candidates, std::vector<double>& of_features) const;
   bool is_beyond(std::size_t kept) const;
   double motion_of(const FeaturePair& pair, const Sides& sides) const;
   Role role_of(const FeaturePair& pair, const Separation& separation, double motion,
@@ -103,7 +103,8 @@ class ClosePairs {
   std::vector<Part> parts_{1};  ///< of each thread
 
   std::vector<double> range_;             ///< m, bound of each particle's displacement in this round
-  std::vector<double> range_of_feature_;  ///< m, of each vertex, edge and face of the cloth, at most; and 0
+  std::vector<double> range_of_feature_;  ///< m, of each vertex of the cloth; 0; of each edge and face where
+                                          ///< candidates have some
   std::vector<double> obstacle_paths_;    ///< m, of each: bound of its points' displacement in this substep
   std::vector<double> moved_;       ///< m, displacement of each particle since the candidates were found
   double longest_ = 0;              ///< m, longest of the particles' displacements

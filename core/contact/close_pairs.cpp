@@ -217,7 +217,7 @@ void ClosePairs::separate_part(const PairQuery& now, Part& part) const {
 
 /// Of the candidates, with the sides of each, those that are not beyond(k). The result is that of the first
 /// part.
-template <class Beyond, class SidesOf>
+template <class SidesOf, class Beyond>
 void ClosePairs::separate_all(const PairQuery& now, const std::vector<FeaturePair>& candidates,
                               const SidesOf& sides_of, const Beyond& beyond) {
   const int shares =

@@ -91,7 +91,7 @@ class ClosePairs {
   Role role_of(const FeaturePair& pair, const Separation& separation, double motion,
                const SweptBounds& swept) const;
   void separate_part(const PairQuery& now, Part& part) const;
-  template <class Beyond, class SidesOf>
+  template <class SidesOf, class Beyond>
   void separate_all(const PairQuery& now, const std::vector<FeaturePair>& candidates, const SidesOf& sides_of,
                     const Beyond& beyond);
 

@@ -56,8 +56,8 @@ void read_impulses(const Lane& lane, ContactConstraint& contact) {
 
 void ContactBatches::clear(std::size_t particles) {
   rows_.clear();
-  slot_.resize(particles, -1);
   for (std::size_t k = ContactBatch::spare; k < particle_.size(); ++k) slot_[at(particle_[k])] = -1;
+  slot_.resize(particles, -1);
   particle_.assign(ContactBatch::spare, -1);
   colours_of_.assign(ContactBatch::spare, 0), colour_after_.assign(ContactBatch::spare, 0);
   next_place_.clear();
@@ -147,7 +147,7 @@ int ContactBatches::sweep(const SolveLimits& limits) {
   std::iota(all_.begin(), all_.end(), 0);
   before_ = values_;
   moved_.assign(values_.size(), 1);
-  const int slots = static_cast<int>(values_.size()), few = slots / 2;
+  const int slots = static_cast<int>(values_.size()), few = (slots - ContactBatch::spare) / 2;
   bool is_whole = true;
   for (int sweep = 1, whole = 0, moved = slots; sweep <= limits.sweeps; ++sweep) {
     is_whole = is_whole || moved > few || sweep - whole >= whole_sweep_after;

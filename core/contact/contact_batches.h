@@ -16,8 +16,8 @@ namespace cloth {
 struct SolveLimits {
   int sweeps = 100;      ///< at most so many
   double tolerance = 0;  ///< m or m/s: of no particle did a sweep change the value by more
-  /// m or m/s: contacts without an impulse whose points lie further beyond their bounds take part where
-  /// others violate them.
+  /// m or m/s: a contact without an impulse that keeps its bound by more is left out until the solution of
+  /// the others violates it.
   double margin = std::numeric_limits<double>::infinity();
 };
 

@@ -50,6 +50,10 @@ struct ContactConstraint {
   }
 };
 
+/// Adds the effect of an impulse at the contact's point to `value`.
+void add_impulse(const ContactConstraint& contact, const std::vector<double>& inverse_mass,
+                 const Vec3& impulse, Vec3Field& value);
+
 double mobility_of(const ContactConstraint& contact, const std::vector<double>& inverse_mass);
 
 /// Adds the effect of the accumulated impulses to `value`.

@@ -1,7 +1,9 @@
 #include "contact/contact_solver.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
+#include <limits>
 
 namespace cloth {
 namespace {
@@ -54,13 +56,16 @@ void ContactSolver::pack(std::span<const ContactConstraint> contacts,
 
 int ContactSolver::solve_again(std::span<ContactConstraint> contacts, const std::vector<double>& inverse_mass,
                                const SolveLimits& limits, Vec3Field& value) {
+  assert(contacts.size() == is_chosen_.size());
   for (const std::size_t c : alone_) relax_alone(contacts[c], inverse_mass, value);
   return batches_.is_empty() ? 1 : batches_.solve(contacts, limits, value);
 }
 
 int ContactSolver::solve(std::span<ContactConstraint> contacts, const std::vector<double>& inverse_mass,
                          const SolveLimits& limits, Vec3Field& value) {
+  constexpr int most_choices = 4;
   is_chosen_.assign(contacts.size(), 0);
+  alone_.clear(), batches_.clear(inverse_mass.size());
   const auto choose = [&](double within) {
     bool any = false;
     for (std::size_t c = 0; c < contacts.size(); ++c) {
@@ -71,7 +76,9 @@ int ContactSolver::solve(std::span<ContactConstraint> contacts, const std::vecto
     return any;
   };
   int sweeps = 0;
-  for (double within = limits.margin; choose(within); within = -limits.tolerance) {
+  double within = limits.margin;
+  for (int choices = 1; choose(within); ++choices) {
+    within = choices < most_choices ? -limits.tolerance : std::numeric_limits<double>::infinity();
     pack(contacts, inverse_mass);
     sweeps = solve_again(contacts, inverse_mass, limits, value);
   }

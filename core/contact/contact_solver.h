@@ -17,10 +17,12 @@ namespace cloth {
 class ContactSolver {
  public:
   /// In and out: `value` contains the effect of the contacts' impulses. Contacts without a free particle are
-  /// skipped. Returns the sweeps.
+  /// skipped. Where contacts that were left out (SolveLimits::margin) are violated, they are added and the
+  /// solve goes on, at last with all. Returns the sweeps of the last of these solves.
   int solve(std::span<ContactConstraint> contacts, const std::vector<double>& inverse_mass,
             const SolveLimits& limits, Vec3Field& value);
-  /// The contacts of the last solve, of which nothing but the impulses may have changed, with other values.
+  /// The contacts of the last solve, which left none out, with other values. Precondition: of the contacts
+  /// nothing but the impulses has changed.
   int solve_again(std::span<ContactConstraint> contacts, const std::vector<double>& inverse_mass,
                   const SolveLimits& limits, Vec3Field& value);
 

@@ -19,8 +19,8 @@ constexpr double skin_part = 0.35;  ///< of a mean edge, see PairSearch
 /// Ten times as much lets a damped cloth creep over a ball by 0.4 mm in a second.
 constexpr double solver_tolerance_part = 1e-6;
 constexpr int solver_sweeps = 20;
-/// Of the thickness: contacts that their particles would keep by more take part where others violate them.
-constexpr double beside_part = 0.003;
+/// Of the thickness: contacts that are kept by more are left out until others violate them.
+constexpr double left_out_beyond_part = 0.003;
 /// Stacks of layers need more: sweeps continue while some pair misses more than `missing_part` of its
 /// thickness and that decreases.
 constexpr double missing_part = 0.03, less_missing = 0.9;
@@ -215,8 +215,8 @@ ContactConstraint ContinuousContact::constraint_of(std::size_t k, const ClothSys
   return contact;
 }
 
-/// By the last of their particles (a counting sort), so that contacts of all kinds at one place follow each
-/// other: a sweep then carries a change further.
+/// By the last of their particles (a counting sort): contacts of all kinds at one place get the first
+/// colours, and what a sweep reads lies together. In the order of pairs `fold` takes 7 % longer.
 void ContinuousContact::order_by_particles() {
   const auto last_particle = [&](std::size_t pair) {
     const Separation& s = separations_[pair];
@@ -246,7 +246,7 @@ void ContinuousContact::solve_target(const ClothSystem& system, const Vec3Field&
   for (const ContactConstraint& contact : constraints_)
     apply_impulses(contact, system.inverse_mass, target_position_);
   double last_missing = infinity;
-  SolveLimits limits{solver_sweeps, solver_tolerance_part * thickness_, beside_part * thickness_};
+  SolveLimits limits{solver_sweeps, solver_tolerance_part * thickness_, left_out_beyond_part * thickness_};
   for (int all = 0; all < max_solver_sweeps; all += limits.sweeps, limits.sweeps = more_solver_sweeps) {
     const int taken = solver_.solve(constraints_, system.inverse_mass, limits, target_position_);
     if (taken < limits.sweeps) return;

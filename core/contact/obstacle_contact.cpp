@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string_view>
 
 #include "contact/touch_kernels.h"
 #include "kernels/instruction_set.h"
@@ -88,10 +87,8 @@ bool any_inside(const Obstacle& obstacle, const ClothSystem& system, const Vec3F
 
 }  // namespace
 
-/// The length first: it is asked of every particle in contact.
 static bool reflects(const Obstacle& obstacle) {
-  constexpr std::string_view name = "reflect";
-  return obstacle.response.size() == name.size() && obstacle.response == name;
+  return obstacle.response == "reflect";
 }
 
 Obstacle grown(Obstacle obstacle, double length) {
@@ -179,7 +176,7 @@ void ObstacleContact::respond(const ClothSystem& system, const ContactBegin& beg
   copy(state.position, first, count, block.integrated_position);
   copy(state.velocity, first, count, block.integrated_velocity);
   copy(state.position, first, count, block.position), copy(state.velocity, first, count, block.velocity);
-  std::fill_n(block.work, TouchBlock::size, 0.0), std::fill_n(block.answers, TouchBlock::size, 0.0);
+  std::fill_n(block.work, TouchBlock::size, 0.0), std::fill_n(block.outcome, TouchBlock::size, 0.0);
   if (begin.constrained) move_to_constrained(system, *begin.constrained, piece, block);
   for (std::size_t k = 0; k < obstacles_.size(); ++k) {
     const Obstacle& obstacle = obstacles_[k];
@@ -192,7 +189,7 @@ void ObstacleContact::respond(const ClothSystem& system, const ContactBegin& beg
   }
   copy(block.position, first, count, state.position), copy(block.velocity, first, count, state.velocity);
   for (std::size_t k = 0; k < count; ++k) {
-    begin.memory.held[first + k] = block.answers[k] == 1 ? 1 : 0;
+    begin.memory.held[first + k] = block.outcome[k] == 1 ? 1 : 0;
     report.work += block.work[k];
   }
 }

@@ -43,8 +43,8 @@ CLOTHLAB_INLINE bool any(const Lanes& of) {
 #endif
 }
 
-// GCC makes shuffles of registers twice as wide as its own by single numbers, and numbers put together one by
-// one by more shuffles than these.
+// Without AVX, GCC 12 takes shuffles of four doubles apart into single numbers; with it, vectors that are put
+// together number by number take more shuffles than these.
 #ifdef __AVX__
 /// The first three numbers of four vectors, side by side.
 CLOTHLAB_INLINE Vectors side_by_side(const Vector (&of)[4]) {

@@ -24,8 +24,8 @@ struct alignas(32) FourContacts {
   double inverse_mobility[4], friction[4], normal_impulse[4];
 };
 
-/// Contacts none of which moves a particle of another. All are read before one is moved: where a processor
-/// expects a load to wait for a store of the last batch, it waits once for eight of them.
+/// Contacts none of which moves a particle of another. All eight read their particles before any writes them,
+/// so that a load that waits for a store of the batch before waits once for eight contacts.
 struct ContactBatch {
   static constexpr int width = 8;
   static constexpr int spare = width * 4;  ///< values of no particle that it needs, at most

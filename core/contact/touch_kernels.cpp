@@ -52,7 +52,7 @@ CLOTHLAB_INLINE double approach_of(const TouchLaw& law, const TouchBlock& block,
   const double mean = dot(normal, get(block.integrated_position, k) - get(block.start, k)) / law.step;
   const double load = dot(normal, began - get(block.integrated_velocity, k));
   const double approach = block.held[k] != 0 ? -dot(normal, began) : -mean;
-  return approach > 2 * most(law.fall_in_a_step, load) ? approach : 0;
+  return approach > 2 * most(law.gravity_speed, load) ? approach : 0;
 }
 
 /// J, of the impulse that stops a particle. The part that changes its velocity acts instantaneously: its work
@@ -113,20 +113,20 @@ void respond_by(const TouchLaw law, TouchBlock& block) {
     double work =
         stopping_work(mass, block.normal_load[k], normal, stopped - velocity, before, stopped, gone);
     Vector answer = stopped;
-    double answers = 1;
+    double outcome = 1;
     if (rebounds) {
       const double approach = approach_of(law, block, k, normal);
       const Vector bounced = answer_of(law, velocity, normal, inward, law.restitution * approach, load);
       answer = choose(moves_in, choose(approach > 0, bounced, stopped), stopped);
       work = limit_rebound(mass, work, stopped, answer);
       const Vector change = answer - stopped;
-      answers = dot(change, change) > 0 ? 2 : 1;
+      outcome = dot(change, change) > 0 ? 2 : 1;
     }
     set(block.position, k, choose(touched, get(block.point, k), get(block.position, k)));
     set(block.velocity, k, choose(touched, answer, velocity));
     set(block.before, k, choose(touched, answer, before));
     block.work[k] += touched ? work : 0;
-    block.answers[k] = most(block.answers[k], touched ? answers : 0);
+    block.outcome[k] = most(block.outcome[k], touched ? outcome : 0);
   }
 }
 

@@ -9,8 +9,8 @@ namespace cloth {
 struct TouchLaw {
   double friction = 0, restitution = 0;
   bool reflects = false;
-  double step = 0;            ///< s
-  double fall_in_a_step = 0;  ///< m/s, that gravity adds
+  double step = 0;           ///< s
+  double gravity_speed = 0;  ///< m/s, that gravity adds
 };
 
 /// Particles side by side, from the beginning of the step through one obstacle after the other. Lengths in m,
@@ -35,7 +35,7 @@ struct alignas(64) TouchBlock {
   Vectors position, velocity;
   Vectors before;   ///< velocity at the beginning of the step, or after the last obstacle
   Numbers work;     ///< J, of all obstacles so far
-  Numbers answers;  ///< 1: an obstacle touched it; 2: it rebounded from one
+  Numbers outcome;  ///< 1: an obstacle touched it; 2: it rebounded from one
 };
 
 struct TouchKernels {

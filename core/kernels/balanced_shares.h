@@ -12,7 +12,8 @@ namespace cloth {
 
 class BalancedShares {
  public:
-  /// As in_shares(). Precondition: what comes of all shares does not depend on where one ends.
+  /// As in_shares(), but that a share can come to have fewer than `least` items. Precondition: what comes of
+  /// all shares together does not depend on where one ends.
   template <class Job>
   int run(WorkerTeam* team, std::size_t count, std::size_t least, const Job& job) {
     const int shares = number_of_shares(team, count, least);
@@ -44,7 +45,7 @@ class BalancedShares {
     return static_cast<std::size_t>(beginning_[share] * static_cast<double>(count));
   }
 
-  std::vector<double> beginning_;
+  std::vector<double> beginning_;  ///< of each share, as a part of all items; and 1
   std::vector<Taken> taken_;
 };
 

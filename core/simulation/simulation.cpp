@@ -348,13 +348,14 @@ void Simulation::set_threads(int threads, ThreadUse use) {
   share_work();
 }
 
-/// Among the threads of the team, if there is one. Where contact goes through all particles between two passes,
-/// mostly on one thread, it waits for what others have written: of a small cloth longer than the pass gains.
+/// Among the threads of the team, if there is one. Continuous contact goes through all particles between two
+/// passes, mostly on one thread, and has to fetch what other cores wrote: for a small cloth that costs more than
+/// sharing the pass saves.
 void Simulation::share_work() {
-  constexpr std::size_t small = 4000;  // particles
-  const bool is_kept = contact_ && contact_->is_continuous() && thread_use_ == ThreadUse::where_they_gain &&
+  constexpr int small = 4000;  // particles
+  const bool keeps_one_thread = contact_ && contact_->is_continuous() && thread_use_ == ThreadUse::where_they_gain &&
                        system_.size() < small;
-  if (forces_->sweep()) forces_->sweep()->set_team(is_kept ? nullptr : team_.get(), thread_use_);
+  if (forces_->sweep()) forces_->sweep()->set_team(keeps_one_thread ? nullptr : team_.get(), thread_use_);
   if (contact_) contact_->set_team(team_.get(), thread_use_);
 }
 

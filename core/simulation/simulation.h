@@ -106,8 +106,7 @@ class Simulation {
   /// How many threads a step may use (1 without this call), and whether it uses them always or only while
   /// measurements show that they save time. The motion is bitwise the same for any number.
   void set_threads(int threads, ThreadUse use = ThreadUse::where_they_gain);
-  /// How many threads a pass over the springs can use: 1 where the cloth is too small or no kernel supports
-  /// it.
+  /// How many threads a step can use, in passes over the springs or in contact.
   int threads() const;
   /// How the method steps now.
   const StepperKind& stepper() const { return stepper_kind_; }

@@ -191,6 +191,43 @@ TEST(ObstacleContact, LeavesWhatItDoesNotTouchToTheBit) {
   EXPECT_EQ(cloth.state, before);
 }
 
+/// 49 of them, on a slope and in a ball that reaches into it.
+TEST(ObstacleContact, OfManyParticlesAndObstaclesIsThatOfEachParticle) {
+  Random random;
+  Scene scene = lying_sheet(7, 7);
+  scene.cloth.pins = {NamedPin::top_left};
+  const ClothSystem system = make_grid(scene.cloth, {});
+  const ClothState begin = starting_state(system);
+  Obstacle slope = coulomb(0.3, 0.6), ball = sphere();
+  slope.normal = {0.1, 1, 0}, slope.point = begin.position[24] + Vec3(0, 1e-3, 0);
+  ball.center = begin.position[24] - Vec3(0.05, 0.2, 0), ball.radius = 0.21, ball.friction = 0.5;
+  const ObstacleContact contact({slope, ball}, 9.81);
+  const auto apply = [&](ClothState& state) {
+    ContactMemory memory;
+    return contact.apply(system, {begin.position, begin.velocity, 1e-3, memory}, state);
+  };
+  ClothState integrated = begin;
+  for (std::size_t i = 0; i < 49; ++i) {
+    integrated.velocity.set(i, random.vector(1)), integrated.position.add(i, random.vector(1e-3));
+  }
+  ClothState all = integrated;
+  const ContactReport report = apply(all);
+  int contacts = 0;
+  double work = 0;
+  for (std::size_t i = 0; i < 49; ++i) {
+    ClothState one = integrated;
+    for (std::size_t k = 0; k < 49; ++k)
+      if (k != i) one.position.set(k, {0, 100, 0});
+    const ContactReport of_one = apply(one);
+    EXPECT_EQ(one.position[i], all.position[i]) << i;
+    EXPECT_EQ(one.velocity[i], all.velocity[i]) << i;
+    contacts += of_one.contacts, work += of_one.work;
+  }
+  EXPECT_EQ(report.contacts, contacts);
+  EXPECT_NEAR(report.work, work, 1e-12);
+  EXPECT_GT(contacts, 20);
+}
+
 TEST(ObstacleContact, PutsEveryParticleOnTheNearestSurface) {
   Random random;
   for (int trial = 0; trial < 1000; ++trial) {

@@ -127,7 +127,7 @@ TEST(ContactSolver, SolvesAChainToWhatAllItsSweepsWouldLeave) {
   EXPECT_GT(apart, 1);
 }
 
-/// More than colours are told apart by bits.
+/// More contacts of a particle than the 64 colours that are kept as bits.
 TEST(ContactSolver, SolvesManyContactsOfOneParticle) {
   constexpr int count = 200;
   const std::vector<double> inverse_mass(count + 1, 1.0);
@@ -176,6 +176,19 @@ TEST(ContactSolver, LeavesOutContactsThatAreFarUntilOthersBringThemNear) {
   for (std::size_t i = 0; i < count; ++i) EXPECT_LE((all[i] - few[i]).norm(), 1e-10) << i;
   for (std::size_t c = 0; c < contacts.size(); ++c)
     EXPECT_NEAR(of_all[c].normal_impulse, of_few[c].normal_impulse, 1e-10) << c;
+}
+
+TEST(ContactSolver, SolvesNothingAgainWhereThereWasNothing) {
+  ContactSolver solver;
+  std::vector<ContactConstraint> contacts{on_floor(0, 0), on_floor(1, 0), on_floor(1, 0)}, none;
+  Vec3Field value(2);
+  value.set(0, {0, -1, 0}), value.set(1, {0, -1, 0});
+  solver.solve(contacts, {1, 1}, {.sweeps = 10}, value);
+  Vec3Field later(2);
+  later.set(0, {0, -3, 0}), later.set(1, {0, -3, 0});
+  solver.solve(none, {1, 1}, {.sweeps = 10}, later);
+  solver.solve_again(none, {1, 1}, {.sweeps = 10}, later);
+  for (std::size_t i = 0; i < 2; ++i) EXPECT_EQ(later[i], Vec3(0, -3, 0));
 }
 
 /// Contacts of up to four particles each, some of them pinned, of some particles many.

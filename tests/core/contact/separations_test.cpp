@@ -86,7 +86,9 @@ TEST_F(EveryInstructionSet, LeavesOutOnlyPairsThatCannotComeNearOrAreNotNearest)
       SCOPED_TRACE(testing::Message() << "pair " << k << " of kind " << static_cast<int>(pairs[k].kind));
       const Separation alone = separate(pairs[k], setting, within(pairs[k]));
       if (needs[k] == PairNeed::separation) expect_same(all[k], alone);
-      if (needs[k] == PairNeed::apart) EXPECT_GT(alone.distance, reach(pairs[k]) + motion[k]);
+      if (needs[k] == PairNeed::apart) {
+        EXPECT_GT(alone.distance, reach(pairs[k]) + motion[k]);
+      }
       if (needs[k] == PairNeed::waits) {
         EXPECT_GT(alone.distance, 2 * motion[k]);
         EXPECT_LT(alone.distance, reach(pairs[k]));

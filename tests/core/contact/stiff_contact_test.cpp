@@ -42,9 +42,9 @@ Solved solved(Scene scene, Integrator& method, double fall, double aside, double
   const Eigen::AlignedBox3d bounds = shape_of(scene.obstacles[0]).bounds(scene.obstacles[0]);
   ClothState state = simulation.state();
   double lowest = infinity;
-  for (std::size_t i = 0; i < system.size(); ++i) lowest = std::min(lowest, state.position[i].y());
+  for (std::size_t i = 0; i < state.position.size(); ++i) lowest = std::min(lowest, state.position[i].y());
   const double speed = fall / weight, wave = stir > 0 ? stir : 0.01 * speed;
-  for (std::size_t i = 0; i < system.size(); ++i) {
+  for (std::size_t i = 0; i < state.position.size(); ++i) {
     state.position.add(i, {aside, bounds.max().y() + 1e-4 - lowest, 0.5 * aside});
     const Vec3 place = state.position[i];
     state.velocity.set(

@@ -52,7 +52,7 @@ Solved solved(Scene scene, bool by_three) {
   const ClothSystem& system = simulation.system();
   ForceModel forces(scene, system);
   ClothState state = simulation.state();
-  for (std::size_t i = 0; i < system.size(); ++i)
+  for (std::size_t i = 0; i < state.position.size(); ++i)
     if (!system.pinned[i]) state.velocity.set(i, {0.1, -1 + 0.2 * std::sin(9 * state.position[i].x()), 0});
   const Vec3Field begin = state.position;
   ImplicitEuler method(1e-6, 100);

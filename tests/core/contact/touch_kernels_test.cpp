@@ -42,7 +42,7 @@ Answer answer_of(const TouchLaw& law, const TouchBlock& block, std::size_t k) {
   const Vec3 moved = (get(block.integrated_position, k) - start) / law.step;
   double approach = -n.dot(block.held[k] != 0 ? began : moved);
   const double added = n.dot(began - get(block.integrated_velocity, k));
-  if (!(approach > 2 * std::max(law.fall_in_a_step, added))) approach = 0;
+  if (!(approach > 2 * std::max(law.gravity_speed, added))) approach = 0;
 
   const Vec3 stopped = after_contact(law, v, n, 0, load), change = stopped - v;
   ContactConstraint contact;
@@ -82,7 +82,7 @@ void expect_as_one_by_one(const TouchLaw& law, const TouchBlock& before, const T
       EXPECT_EQ(get(after.position, k), get(before.position, k));
       EXPECT_EQ(get(after.velocity, k), get(before.velocity, k));
       EXPECT_EQ(after.work[k], 0);
-      EXPECT_EQ(after.answers[k], 0);
+      EXPECT_EQ(after.outcome[k], 0);
       continue;
     }
     const Answer one = answer_of(law, before, k);
@@ -90,7 +90,7 @@ void expect_as_one_by_one(const TouchLaw& law, const TouchBlock& before, const T
     EXPECT_LE((get(after.velocity, k) - one.velocity).norm(), 1e-13) << k;
     EXPECT_EQ(get(after.before, k), get(after.velocity, k));
     EXPECT_NEAR(after.work[k], one.work, 1e-15) << k;
-    EXPECT_GE(after.answers[k], 1);
+    EXPECT_GE(after.outcome[k], 1);
   }
 }
 
@@ -112,7 +112,7 @@ TEST_P(TouchOfEverySet, OfManyParticlesIsThatOfEach) {
       TouchBlock after = before;
       active_kernels<TouchKernels>().respond(law, after);
       expect_as_one_by_one(law, before, after);
-      for (const double answers : after.answers) rebounds += answers == 2, others += answers == 1;
+      for (const double outcome : after.outcome) rebounds += outcome == 2, others += outcome == 1;
     }
   EXPECT_GT(rebounds, 100);
   EXPECT_GT(others, 500);

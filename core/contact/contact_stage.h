@@ -16,11 +16,11 @@
 // Cost per step, continuous: the cloth's bounds are computed, which is linear in particles; while an
 // obstacle's bounds are away from them, it costs no more. Near the cloth, each round tests the bounds of
 // every face of the cloth against each sphere, where the pairs of earlier rounds cannot be used again, and
-// relaxes those pairs nearer than 1.5 thicknesses that the step brings to their thickness, in 20 sweeps, in up
-// to 1000 for stacks of layers. A step is linear in faces and such pairs; it usually has fewer than ten rounds.
-// After long steps of implicit methods up to 20 linear solves over the whole cloth come before (stiff_target.h).
-// With Verlet a touching step costs no more force evaluations than another, and one more where a limiter ties
-// the closing kick to the drift. docs/performance.md has measured times.
+// relaxes those pairs nearer than 1.5 thicknesses that the step brings to their thickness, in 20 sweeps, in
+// up to 1000 for stacks of layers. A step is linear in faces and such pairs; it usually has fewer than ten
+// rounds. After long steps of implicit methods up to 20 linear solves over the whole cloth come before
+// (stiff_target.h). With Verlet a touching step costs no more force evaluations than another, and one more
+// where a limiter ties the closing kick to the drift. docs/performance.md has measured times.
 #pragma once
 
 #include <functional>

@@ -1,5 +1,7 @@
 #include "contact/closest_kernels.h"
 
+#include "kernels/three.h"
+
 #pragma GCC diagnostic ignored "-Wpsabi"  // every function that takes a vector is inlined
 
 namespace cloth {
@@ -11,22 +13,8 @@ constexpr double slender = 1e-8;  ///< as in closest_points.h
 using V [[gnu::vector_size(8 * width)]] = double;
 using Mask = decltype(V{} < V{});
 
-struct Vector {
-  V x, y, z;
-};
+using Vector = kernels::Three<V>;
 
-CLOTHLAB_INLINE Vector operator+(const Vector& a, const Vector& b) {
-  return {a.x + b.x, a.y + b.y, a.z + b.z};
-}
-CLOTHLAB_INLINE Vector operator-(const Vector& a, const Vector& b) {
-  return {a.x - b.x, a.y - b.y, a.z - b.z};
-}
-CLOTHLAB_INLINE Vector operator*(V s, const Vector& a) {
-  return {s * a.x, s * a.y, s * a.z};
-}
-CLOTHLAB_INLINE V dot(const Vector& a, const Vector& b) {
-  return (a.x * b.x + a.y * b.y) + a.z * b.z;
-}
 CLOTHLAB_INLINE Vector cross(const Vector& a, const Vector& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }

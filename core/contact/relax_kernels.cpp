@@ -1,6 +1,7 @@
 #include "contact/relax_kernels.h"
 
 #include "kernels/four.h"
+#include "kernels/three.h"
 
 namespace cloth {
 namespace {
@@ -9,23 +10,8 @@ using kernels::load_four, kernels::product, kernels::store_four;
 using Vector = kernels::Four;  // of one particle or contact
 using Lanes = kernels::Four;   // a number of each of four contacts
 
-/// Vectors of four contacts.
-struct Vectors {
-  Lanes x, y, z;
-};
+using Vectors = kernels::Three<Lanes>;  // of four contacts
 
-CLOTHLAB_INLINE Vectors operator+(const Vectors& a, const Vectors& b) {
-  return {a.x + b.x, a.y + b.y, a.z + b.z};
-}
-CLOTHLAB_INLINE Vectors operator-(const Vectors& a, const Vectors& b) {
-  return {a.x - b.x, a.y - b.y, a.z - b.z};
-}
-CLOTHLAB_INLINE Vectors operator*(const Lanes& factor, const Vectors& a) {
-  return {factor * a.x, factor * a.y, factor * a.z};
-}
-CLOTHLAB_INLINE Lanes dot(const Vectors& a, const Vectors& b) {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
-}
 CLOTHLAB_INLINE Lanes root(const Lanes& a) {
   return Lanes{__builtin_sqrt(a[0]), __builtin_sqrt(a[1]), __builtin_sqrt(a[2]), __builtin_sqrt(a[3])};
 }

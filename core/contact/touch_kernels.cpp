@@ -1,5 +1,7 @@
 #include "contact/touch_kernels.h"
 
+#include "kernels/three.h"
+
 namespace cloth {
 namespace {
 
@@ -16,22 +18,8 @@ CLOTHLAB_INLINE double clamp(double a, double low, double high) {
   return least(most(a, low), high);
 }
 
-struct Vector {
-  double x, y, z;
-};
+using Vector = kernels::Three<double>;
 
-CLOTHLAB_INLINE Vector operator+(const Vector& a, const Vector& b) {
-  return {a.x + b.x, a.y + b.y, a.z + b.z};
-}
-CLOTHLAB_INLINE Vector operator-(const Vector& a, const Vector& b) {
-  return {a.x - b.x, a.y - b.y, a.z - b.z};
-}
-CLOTHLAB_INLINE Vector operator*(double factor, const Vector& a) {
-  return {factor * a.x, factor * a.y, factor * a.z};
-}
-CLOTHLAB_INLINE double dot(const Vector& a, const Vector& b) {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
-}
 CLOTHLAB_INLINE Vector choose(bool first, const Vector& a, const Vector& b) {
   return {first ? a.x : b.x, first ? a.y : b.y, first ? a.z : b.z};
 }

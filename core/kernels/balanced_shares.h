@@ -17,7 +17,7 @@ class BalancedShares {
   template <class Job>
   int run(WorkerTeam* team, std::size_t count, std::size_t least, const Job& job) {
     const int shares = number_of_shares(team, count, least);
-    if (shares == 1) {
+    if (!team || shares == 1) {
       job(0, std::size_t{0}, count);
       return 1;
     }

@@ -8,6 +8,8 @@
 #include <thread>
 #include <vector>
 
+#include "kernels/balanced_shares.h"
+
 namespace cloth::worker_team_test {
 namespace {
 
@@ -19,6 +21,30 @@ TEST(WorkerTeam, GivesEveryShareToOneThread) {
     for (int share = 0; share < 4; ++share)
       EXPECT_EQ(runs[static_cast<std::size_t>(share)], share < shares ? 1 : 0) << shares << " shares";
   }
+}
+
+/// Where shares begin follows the times that they took.
+TEST(BalancedShares, CoverEveryItemOnceWhateverTheyTook) {
+  constexpr std::size_t items = 1000;
+  WorkerTeam team(3);
+  BalancedShares shares;
+  for (int round = 0; round < 100; ++round) {
+    std::vector<std::atomic<int>> visits(items);
+    std::vector<std::atomic<std::size_t>> ends(3);
+    const int count = shares.run(&team, items, 100, [&](int share, std::size_t begin, std::size_t end) {
+      if (share == round / 30) std::this_thread::sleep_for(std::chrono::microseconds(100));
+      for (std::size_t k = begin; k < end; ++k) ++visits[k];
+      ends[static_cast<std::size_t>(share)] = end;
+    });
+    ASSERT_EQ(count, team.size());
+    for (std::size_t k = 0; k < items; ++k) ASSERT_EQ(visits[k], 1) << k << " in round " << round;
+    for (std::size_t k = 1; k < ends.size(); ++k) EXPECT_LE(ends[k - 1], ends[k]);
+  }
+  int alone = 0;
+  EXPECT_EQ(shares.run(nullptr, items, 100,
+                       [&](int, std::size_t begin, std::size_t end) { alone += begin == 0 && end == items; }),
+            1);
+  EXPECT_EQ(alone, 1);
 }
 
 /// Every share waits now and then, another one each time, so that who comes late changes.

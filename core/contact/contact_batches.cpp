@@ -12,7 +12,7 @@ namespace {
 constexpr int whole_sweep_after = 4;  ///< sweeps
 constexpr int width = ContactBatch::width;
 
-/// One of the four contacts.
+/// Where a contact stands in its batch.
 struct Lane {
   Lane(std::vector<ContactBatch>& batches, int place)
       : four(batches[at(place / width)].four[place % width / 4]), of(place % 4), spare(place % width * 4) {}
@@ -118,13 +118,12 @@ void ContactBatches::arrange(std::span<const ContactConstraint> contacts,
   for (const Row& row : rows_) {
     const Lane lane(batches_, row.place);
     const ContactConstraint& contact = contacts[row.contact];
-    cloth::clear(lane);
     write(lane, contact);
-    for (std::size_t k = 0; k < at(contact.count); ++k) {
-      if (contact.weight[k] == 0) continue;
-      lane.four.slot[lane.of][k] = row.slot[k];
-      lane.four.weight[lane.of][k] = contact.weight[k];
-      lane.four.response[lane.of][k] = contact.weight[k] * inverse_mass[at(contact.particle[k])];
+    for (int k = 0; k < 4; ++k) {
+      const double weight = k < contact.count ? contact.weight[at(k)] : 0;
+      lane.four.slot[lane.of][k] = weight != 0 ? row.slot[at(k)] : lane.spare + k;
+      lane.four.weight[lane.of][k] = weight;
+      lane.four.response[lane.of][k] = weight != 0 ? weight * inverse_mass[at(contact.particle[at(k)])] : 0;
     }
   }
 }

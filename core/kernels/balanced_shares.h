@@ -32,9 +32,6 @@ class BalancedShares {
     return shares;
   }
 
-  /// Of all items, those before each share, and 1 at the end.
-  const std::vector<double>& beginnings() const { return beginning_; }
-
  private:
   struct alignas(64) Taken {
     double seconds = 0;

@@ -1,11 +1,14 @@
 #include "contact/near_pairs.h"
 
 #include <algorithm>
+#include <bit>
+#include <cassert>
 #include <cmath>
 #include <numbers>
 
 #include "geometry/at.h"
 #include "kernels/in_shares.h"
+#include "kernels/instruction_set.h"
 
 namespace cloth {
 namespace {
@@ -65,14 +68,34 @@ bool share_vertex(const std::array<int, 2>& edge, const std::array<int, 2>& othe
 }
 
 /// From the boxes of the vertices to those of edges and faces.
-template <class Box>
-void spread(const Surface& surface, OfFeatures<std::vector<Box>>& boxes) {
-  const std::vector<Box>& vertices = boxes[Feature::vertex];
+void spread(const Surface& surface, OfFeatures<std::vector<Bounds>>& boxes) {
+  const std::vector<Bounds>& vertices = boxes[Feature::vertex];
   boxes[Feature::edge].clear(), boxes[Feature::face].clear();
   for (const auto& [a, b] : surface.edges)
     boxes[Feature::edge].push_back(joined(vertices[at(a)], vertices[at(b)]));
   for (const auto& [a, b, c] : surface.triangles)
     boxes[Feature::face].push_back(joined(joined(vertices[at(a)], vertices[at(b)]), vertices[at(c)]));
+}
+
+/// The region of a feature, from those of the vertices.
+RoundedRegion region_of(const Surface& surface, Feature feature, int index,
+                        std::span<const RoundedRegion> vertices) {
+  const auto joined = [&](const auto& all) {
+    RoundedRegion region = vertices[at(all[0])];
+    for (std::size_t k = 1; k < all.size(); ++k) region.add(vertices[at(all[k])]);
+    return region;
+  };
+  if (feature == Feature::vertex) return vertices[at(index)];
+  return feature == Feature::edge ? joined(surface.edges[at(index)]) : joined(surface.triangles[at(index)]);
+}
+
+/// In the given order of these features.
+void fill(std::vector<EightRegions>& regions, const Surface& surface, Feature feature,
+          std::span<const int> order, std::span<const RoundedRegion> vertices) {
+  constexpr std::size_t eight = EightBoxes::count;
+  regions.resize((order.size() + eight - 1) / eight);
+  for (std::size_t place = 0; place < order.size(); ++place)
+    regions[place / eight].set(place % eight, region_of(surface, feature, order[place], vertices));
 }
 
 bool holds(const Bounds& outer, const Bounds& inner) {
@@ -122,17 +145,26 @@ class PairSearch::Step {
 
   /// Pairs of the cloth itself, each side grown by half the reach.
   void find_own() {
-    std::vector<RoundedBox>& near = search_.near_boxes_[Feature::vertex];
+    std::vector<RoundedRegion>& near = search_.near_;
     near.clear();
-    for (const Bounds& box : particles_) near.emplace_back(box.grown(0.5 * swept_.own_reach));
-    spread(cloth_, search_.near_boxes_);
-    take_near(search_.near_boxes_);
+    for (const Capsule& capsule : swept_.particles)
+      near.push_back(rounded({capsule.from, capsule.to, capsule.radius + 0.5 * swept_.own_reach}));
+    for (const Feature feature : {Feature::edge, Feature::face})
+      fill(search_.own_regions_[feature], cloth_, feature, search_.own_trees_[feature].order(), near);
+    take_near(search_.own_regions_);
   }
 
  private:
-  void take_near(const OfFeatures<std::vector<RoundedBox>>& far) {
+  void take_near(const OfFeatures<Regions>& far) {
     for (const Meeting& meeting : search_.meetings_)
-      if (meeting.obstacle == obstacle_) search_.take_near(meeting, far, pairs_);
+      if (meeting.obstacle == obstacle_) search_.take_near(meeting, far[meeting.far()], pairs_);
+  }
+
+  /// A particle in the coordinates of an obstacle at rest, grown by the reach.
+  Capsule seen_capsule(const Capsule& capsule, const PoseInterpolation& path) const {
+    const Pose& pose = path.from();
+    return {pose.inverse(capsule.from), pose.inverse(capsule.to),
+            (capsule.radius + reach_) / path.least_stretch()};
   }
 
   /// Boxes of the particles in the coordinates of an obstacle, for its whole path, grown by the reach.
@@ -143,10 +175,7 @@ class PairSearch::Step {
       return boxes;
     }
     boxes.clear();
-    const Pose& pose = path.from();
-    for (const Capsule& capsule : swept_.particles)
-      boxes.push_back(box_of(Capsule{pose.inverse(capsule.from), pose.inverse(capsule.to),
-                                     (capsule.radius + reach_) / path.least_stretch()}));
+    for (const Capsule& capsule : swept_.particles) boxes.push_back(box_of(seen_capsule(capsule, path)));
     return boxes;
   }
   void find_outcodes(const std::vector<Bounds>& particles, const Bounds& box) {
@@ -216,11 +245,13 @@ class PairSearch::Step {
   }
 
   void find_mesh(const ObstacleBody& body, const PoseInterpolation& path) {
-    std::vector<RoundedBox>& near = search_.near_boxes_[Feature::vertex];
+    std::vector<RoundedRegion>& near = search_.near_;
     near.clear();
-    for (const Bounds& box : seen_boxes(body, path)) near.emplace_back(box);
-    spread(cloth_, search_.near_boxes_);
-    take_near(search_.mesh_boxes_[at(obstacle_)]);
+    if (path.is_still())
+      for (const Capsule& capsule : swept_.particles) near.push_back(rounded(seen_capsule(capsule, path)));
+    else
+      for (const Bounds& box : seen_boxes(body, path)) near.push_back(rounded(box));
+    take_near(search_.mesh_regions_[at(obstacle_)]);
   }
 
   PairSearch& search_;
@@ -241,7 +272,7 @@ PairSearch::PairSearch(const Surface& cloth, const Vec3Field& start, const std::
       with_itself_(with_itself),
       skin_(skin),
       mesh_trees_(bodies.size()),
-      mesh_boxes_(bodies.size()) {
+      mesh_regions_(bodies.size()) {
   if (with_itself_) {
     for (std::size_t i = 0; i < start.size(); ++i) boxes_[Feature::vertex].push_back(bounds_of(start[i]));
     spread(cloth_, boxes_);
@@ -253,11 +284,16 @@ PairSearch::PairSearch(const Surface& cloth, const Vec3Field& start, const std::
   for (std::size_t k = 0; k < bodies.size(); ++k) {
     if (bodies[k].kind != BodyKind::surface) continue;
     boxes_[Feature::vertex].clear();
-    for (const Vec3& vertex : bodies[k].vertices) boxes_[Feature::vertex].push_back(bounds_of(vertex));
+    std::vector<RoundedRegion> vertices;
+    for (const Vec3& vertex : bodies[k].vertices) {
+      boxes_[Feature::vertex].push_back(bounds_of(vertex));
+      vertices.push_back(rounded(Capsule{vertex, vertex}));
+    }
     spread(bodies[k].surface, boxes_);
     for (const Feature feature : {Feature::vertex, Feature::edge, Feature::face}) {
       mesh_trees_[k][feature] = BoxTree(boxes_[feature]);
-      for (const Bounds& box : boxes_[feature]) mesh_boxes_[k][feature].emplace_back(box);
+      assert(boxes_[feature].size() / EightBoxes::count < std::size_t{1} << RegionOverlap::most_bits);
+      fill(mesh_regions_[k][feature], bodies[k].surface, feature, mesh_trees_[k][feature].order(), vertices);
     }
     for (const PairKind kind : {PairKind::edge_edge, PairKind::vertex_face, PairKind::face_vertex})
       meetings_.push_back({.obstacle = static_cast<int>(k), .kind = kind});
@@ -311,14 +347,14 @@ void PairSearch::find_mesh_overlaps(Meeting& meeting) {
   outcodes_.resize(vertices.size());
   for (std::size_t i = 0; i < vertices.size(); ++i) outcodes_[i] = outcode(vertices[i], tree.bounds());
   const auto collect_of = [&](std::size_t count, const auto& particles_of) {
-    collect(count, meeting, [&](std::size_t begin, std::size_t end, std::vector<BoxPair>& part) {
+    collect(count, meeting, [&](std::size_t begin, std::size_t end, std::vector<RegionOverlap>& part) {
       for (std::size_t q = begin; q < end; ++q) {
         unsigned common = ~0U;
         Bounds box;
         for (const int i : particles_of(q)) common &= outcodes_[at(i)], box.add(vertices[at(i)]);
         if (common != 0) continue;
-        tree.visit<BoxTest::rounded>(box, [&, query = static_cast<int>(q)](int index) {
-          part.push_back({query, index});
+        tree.visit_eights(0, box, [&, query = static_cast<int>(q)](int eight, std::uint32_t hits) {
+          part.push_back({query, static_cast<std::uint32_t>(eight), hits});
         });
       }
     });
@@ -341,17 +377,37 @@ void PairSearch::find_own_overlaps(double reach) {
   spread(cloth_, boxes_);
   for (const Feature feature : {Feature::edge, Feature::face}) own_trees_[feature].refit(boxes_[feature]);
   Meeting &edge_meeting = meetings_[0], &face_meeting = meetings_[1];  // as the constructor made them
-  collect(vertices.size(), face_meeting, [&](std::size_t begin, std::size_t end, std::vector<BoxPair>& part) {
-    own_trees_[Feature::face].collect<BoxTest::rounded>(vertices, begin, end, part);
-    std::erase_if(
-        part, [&](const BoxPair& pair) { return has_vertex(cloth_.triangles[at(pair.index)], pair.query); });
-  });
+  /// Of eight places of the tree, `hits` without those of features that share(feature).
+  const auto add = [](const BoxTree& tree, int query, int eight, std::uint32_t hits, const auto& share,
+                      std::vector<RegionOverlap>& part) {
+    for (std::uint32_t left = hits; left != 0; left &= left - 1) {
+      const int place = eight * static_cast<int>(EightBoxes::count) + std::countr_zero(left);
+      if (share(tree.order()[at(place)])) hits &= ~(left & -left);
+    }
+    if (hits != 0) part.push_back({query, static_cast<std::uint32_t>(eight), hits});
+  };
+  const BoxTree &edges = own_trees_[Feature::edge], &faces = own_trees_[Feature::face];
+  collect(vertices.size(), face_meeting,
+          [&](std::size_t begin, std::size_t end, std::vector<RegionOverlap>& part) {
+            for (std::size_t v = begin; v < end; ++v)
+              faces.visit_eights(
+                  0, vertices[v], [&, vertex = static_cast<int>(v)](int eight, std::uint32_t hits) {
+                    add(
+                        faces, vertex, eight, hits,
+                        [&](int face) { return has_vertex(cloth_.triangles[at(face)], vertex); }, part);
+                  });
+          });
   collect(cloth_.edges.size(), edge_meeting,
-          [&](std::size_t begin, std::size_t end, std::vector<BoxPair>& part) {
-            own_trees_[Feature::edge].collect_own<BoxTest::rounded>(begin, end, part);
-            std::erase_if(part, [&](const BoxPair& pair) {
-              return share_vertex(cloth_.edges[at(pair.query)], cloth_.edges[at(pair.index)]);
-            });
+          [&](std::size_t begin, std::size_t end, std::vector<RegionOverlap>& part) {
+            for (std::size_t place = begin; place < end; ++place) {
+              const int query = edges.order()[place];
+              const auto shares = [&](int edge) {
+                return share_vertex(cloth_.edges[at(query)], cloth_.edges[at(edge)]);
+              };
+              edges.visit_eights(
+                  static_cast<int>(place) + 1, boxes_[Feature::edge][at(query)],
+                  [&](int eight, std::uint32_t hits) { add(edges, query, eight, hits, shares, part); });
+            }
           });
 }
 
@@ -369,25 +425,23 @@ void PairSearch::collect(std::size_t queries, Meeting& meeting, const Collect& c
                             parts_[at(share)].overlaps.end());
 }
 
-/// Appends those of the overlaps whose boxes still overlap. Without branches: most do not.
-void PairSearch::take_near(const Meeting& meeting, const OfFeatures<std::vector<RoundedBox>>& far_boxes,
-                           std::vector<FeaturePair>& pairs) {
-  const std::vector<BoxPair>& overlaps = meeting.overlaps;
-  const std::vector<RoundedBox>&near = near_boxes_[meeting.near()], &far = far_boxes[meeting.far()];
+/// Appends those of the overlaps whose regions still overlap.
+void PairSearch::take_near(const Meeting& meeting, const Regions& far, std::vector<FeaturePair>& pairs) {
+  const std::vector<RegionOverlap>& overlaps = meeting.overlaps;
+  const bool is_own = meeting.obstacle == FeaturePair::cloth_itself;
+  const BoxTree& tree = (is_own ? own_trees_ : mesh_trees_[at(meeting.obstacle)])[meeting.far()];
+  const auto find = active_kernels<RegionKernels>().find;
   const auto take = [&](int share, std::size_t begin, std::size_t end) {
     Part& part = parts_[at(share)];
     part.pairs.clear();
-    if (part.hits.size() < end - begin) part.hits.resize(end - begin);
     for (std::size_t next = begin; begin < end; begin = next) {
       const int query = overlaps[begin].query;
-      const RoundedLimits limits(near[at(query)]);
-      std::size_t count = 0;
-      for (; next < end && overlaps[next].query == query; ++next) {
-        part.hits[count] = overlaps[next].index;
-        count += limits.may_overlap(far[at(overlaps[next].index)]) ? 1 : 0;
-      }
-      for (std::size_t k = 0; k < count; ++k)
-        part.pairs.push_back({meeting.obstacle, meeting.kind, query, part.hits[k]});
+      while (next < end && overlaps[next].query == query) ++next;
+      part.places.resize(std::max(part.places.size(), (next - begin) * EightBoxes::count));
+      const int found = find(far.data(), overlaps.data() + begin, static_cast<int>(next - begin),
+                             region_of(cloth_, meeting.near(), query, near_), part.places.data());
+      for (int k = 0; k < found; ++k)
+        part.pairs.push_back({meeting.obstacle, meeting.kind, query, tree.order()[at(part.places[at(k)])]});
     }
   };
   const int shares = in_shares(team_, overlaps.size(), least_share, take);

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "contact/feature_pairs.h"
+#include "contact/region_kernels.h"
 #include "contact/regions.h"
 #include "geometry/box_tree.h"
-#include "geometry/rounded_box.h"
 
 namespace cloth {
 
@@ -64,11 +64,13 @@ class PairSearch {
   void append_boxes(int body, int level, const Vec3Field& position, double reach, std::vector<Bounds>& boxes);
 
  private:
+  /// Of features, in the order of their hierarchy.
+  using Regions = std::vector<EightRegions>;
   /// Features of the cloth and of a mesh or of the cloth itself that can be pairs of one kind.
   struct Meeting {
     int obstacle = FeaturePair::cloth_itself;
     PairKind kind = PairKind::edge_edge;
-    std::vector<BoxPair> overlaps{};  ///< of their hierarchies
+    std::vector<RegionOverlap> overlaps{};  ///< by query
 
     Feature near() const;
     Feature far() const;
@@ -81,26 +83,26 @@ class PairSearch {
   void find_mesh_overlaps(Meeting& meeting);
   template <class Collect>
   void collect(std::size_t queries, Meeting& meeting, const Collect& collect_part);
-  void take_near(const Meeting& meeting, const OfFeatures<std::vector<RoundedBox>>& far,
-                 std::vector<FeaturePair>& pairs);
+  void take_near(const Meeting& meeting, const Regions& far, std::vector<FeaturePair>& pairs);
 
   const Surface& cloth_;
   const std::vector<ObstacleBody>& bodies_;
   bool with_itself_;
   double skin_;
   WorkerTeam* team_ = nullptr;
-  OfFeatures<BoxTree> own_trees_;                                ///< of edges and faces
-  std::vector<OfFeatures<BoxTree>> mesh_trees_;                  ///< of each body; empty unless it is a mesh
-  std::vector<OfFeatures<std::vector<RoundedBox>>> mesh_boxes_;  ///< of each body
+  OfFeatures<BoxTree> own_trees_;                  ///< of edges and faces
+  std::vector<OfFeatures<BoxTree>> mesh_trees_;    ///< of each body; empty unless it is a mesh
+  std::vector<OfFeatures<Regions>> mesh_regions_;  ///< of each body
   std::vector<Meeting> meetings_;
-  std::vector<Bounds> particles_;                   ///< of this search
-  std::vector<unsigned> outcodes_;                  ///< of particles, scratch
-  OfFeatures<std::vector<Bounds>> boxes_;           ///< scratch
-  OfFeatures<std::vector<RoundedBox>> near_boxes_;  ///< scratch
-  struct Part {                                     ///< of one thread
+  std::vector<Bounds> particles_;          ///< of this search
+  std::vector<unsigned> outcodes_;         ///< of particles, scratch
+  OfFeatures<std::vector<Bounds>> boxes_;  ///< scratch
+  std::vector<RoundedRegion> near_;        ///< of the particles, grown by the reach
+  OfFeatures<Regions> own_regions_;
+  struct Part {  ///< of one thread
     std::vector<FeaturePair> pairs;
-    std::vector<BoxPair> overlaps;
-    std::vector<int> hits;
+    std::vector<RegionOverlap> overlaps;
+    std::vector<int> places;
   };
   std::vector<Part> parts_{1};
 

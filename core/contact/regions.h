@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "geometry/bounds.h"
+#include "geometry/eight_extents.h"
 
 namespace cloth {
 
@@ -24,6 +25,37 @@ struct Interval {
 
 inline Bounds box_of(const Capsule& capsule) {
   return bounds_of(capsule.from, capsule.to).grown(capsule.radius);
+}
+
+namespace of_regions {
+
+inline Eigen::Vector4d along_diagonals(const Vec3& p) {
+  return {p.x() + p.y() + p.z(), p.x() + p.y() - p.z(), p.x() - p.y() + p.z(), p.y() + p.z() - p.x()};
+}
+
+/// m, the extents along diagonals: of a segment whose ends are at these, grown by `beyond`.
+inline RoundedRegion rounded(const Bounds& box, const Eigen::Vector4d& from, const Eigen::Vector4d& to,
+                             double beyond) {
+  const Eigen::Vector4d all = Eigen::Vector4d::Constant(beyond);
+  RoundedRegion region;
+  Eigen::Map<Eigen::Vector3f>(region.box.lower) = box.lower.cast<float>();
+  Eigen::Map<Eigen::Vector3f>(region.box.upper) = box.upper.cast<float>();
+  Eigen::Map<Eigen::Vector4f>(region.diagonals.lower) = (from.cwiseMin(to) - all).cast<float>();
+  Eigen::Map<Eigen::Vector4f>(region.diagonals.upper) = (from.cwiseMax(to) + all).cast<float>();
+  return region;
+}
+
+}  // namespace of_regions
+
+inline RoundedRegion rounded(const Bounds& box) {
+  const Eigen::Vector4d middle = of_regions::along_diagonals(0.5 * (box.lower + box.upper));
+  return of_regions::rounded(box, middle, middle, 0.5 * (box.upper - box.lower).sum());
+}
+
+inline RoundedRegion rounded(const Capsule& capsule) {
+  constexpr double diagonal = 1.7320508075688774;  // length of (1, 1, 1)
+  return of_regions::rounded(box_of(capsule), of_regions::along_diagonals(capsule.from),
+                             of_regions::along_diagonals(capsule.to), diagonal * capsule.radius);
 }
 
 /// The extent along a unit axis.

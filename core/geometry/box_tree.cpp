@@ -115,6 +115,7 @@ struct BoxTree::Builder {
     // As much as a child can hold, so that all are full but the last.
     std::size_t capacity = 1;
     while (capacity * width < range.size()) capacity *= width;
+    assert(capacity > 1 || static_cast<std::size_t>(range.data() - items.data()) % width == 0);
     std::array<Range, width> parts;
     std::size_t used = 0;
     if (capacity == 1)
@@ -185,43 +186,31 @@ void BoxTree::fit() {
     for (std::size_t k = 0; k < used; ++k) {
       const int child = node.child[k];
       if (child < 0) {
-        const Query leaf = rounded(boxes_[static_cast<std::size_t>(~child)]);
-        for (std::size_t axis = 0; axis < 3; ++axis)
-          node.lower[axis][k] = leaf.lower[axis], node.upper[axis][k] = leaf.upper[axis];
+        node.boxes.set(k, rounded(boxes_[static_cast<std::size_t>(~child)]));
         continue;
       }
       const Node& below = nodes_[static_cast<std::size_t>(child)];
       const auto filled = std::popcount(below.used);
       for (std::size_t axis = 0; axis < 3; ++axis) {
-        const auto &lower = below.lower[axis], &upper = below.upper[axis];
-        node.lower[axis][k] = *std::min_element(lower.begin(), lower.begin() + filled);
-        node.upper[axis][k] = *std::max_element(upper.begin(), upper.begin() + filled);
+        const float *const lower = below.boxes.lower[axis], *const upper = below.boxes.upper[axis];
+        node.boxes.lower[axis][k] = *std::min_element(lower, lower + filled);
+        node.boxes.upper[axis][k] = *std::max_element(upper, upper + filled);
       }
     }
   }
 }
 
-template <BoxTest test>
-void BoxTree::collect(std::span<const Bounds> queries, std::size_t begin, std::size_t end,
-                      std::vector<BoxPair>& pairs) const {
-  for (std::size_t q = begin; q < end; ++q)
-    visit<test>(queries[q], [&, query = static_cast<int>(q)](int index) { pairs.push_back({query, index}); });
+void BoxTree::collect(std::span<const Bounds> queries, std::vector<BoxPair>& pairs) const {
+  for (std::size_t q = 0; q < queries.size(); ++q)
+    visit(queries[q], [&, query = static_cast<int>(q)](int index) { pairs.push_back({query, index}); });
 }
 
-template <BoxTest test>
-void BoxTree::collect_own(std::size_t begin, std::size_t end, std::vector<BoxPair>& pairs) const {
-  for (std::size_t place = begin; place < end; ++place)
-    visit_from<test>(static_cast<int>(place) + 1, boxes_[place], [&, query = index_[place]](int other) {
+void BoxTree::collect_own(std::vector<BoxPair>& pairs) const {
+  for (std::size_t place = 0; place < boxes_.size(); ++place)
+    visit_from(static_cast<int>(place) + 1, boxes_[place], [&, query = index_[place]](int other) {
       pairs.push_back({query, index_[static_cast<std::size_t>(other)]});
     });
 }
-
-template void BoxTree::collect<BoxTest::exact>(std::span<const Bounds>, std::size_t, std::size_t,
-                                               std::vector<BoxPair>&) const;
-template void BoxTree::collect<BoxTest::rounded>(std::span<const Bounds>, std::size_t, std::size_t,
-                                                 std::vector<BoxPair>&) const;
-template void BoxTree::collect_own<BoxTest::exact>(std::size_t, std::size_t, std::vector<BoxPair>&) const;
-template void BoxTree::collect_own<BoxTest::rounded>(std::size_t, std::size_t, std::vector<BoxPair>&) const;
 
 void BoxTree::append_rounded_boxes(int level, std::vector<Bounds>& boxes) const {
   struct Place {
@@ -243,8 +232,8 @@ void BoxTree::append_rounded_boxes(int level, std::vector<Bounds>& boxes) const 
       Bounds box;
       for (std::size_t axis = 0; axis < 3; ++axis) {
         const auto a = static_cast<Eigen::Index>(axis);
-        box.lower[a] = origin_[a] + static_cast<double>(node.lower[axis][k]);
-        box.upper[a] = origin_[a] + static_cast<double>(node.upper[axis][k]);
+        box.lower[a] = origin_[a] + static_cast<double>(node.boxes.lower[axis][k]);
+        box.upper[a] = origin_[a] + static_cast<double>(node.boxes.upper[axis][k]);
       }
       if (level <= 0)
         boxes.back().add(box);

@@ -1,9 +1,9 @@
 // A bounding volume hierarchy: which of many boxes overlap a given one.
 //
 // Nodes have eight children, whose boxes are stored in single precision and tested at once; hits are tested
-// again in double precision, so that the result depends on the boxes and not on the tree (BoxTest::exact).
-// Rounding is monotonic, so that no overlap is lost. All nodes but those at one edge of the tree are full,
-// and its depth is minimal for eight children.
+// again in double precision, so that the result depends on the boxes and not on the tree. Rounding is
+// monotonic, so that no overlap is lost. All nodes but those at one edge of the tree are full, and its depth
+// is minimal for eight children.
 #pragma once
 
 #include <array>
@@ -13,11 +13,8 @@
 #include <span>
 #include <vector>
 
-#if defined(__SSE2__)
-#include <emmintrin.h>
-#endif
-
 #include "geometry/bounds.h"
+#include "geometry/eight_extents.h"
 
 namespace cloth {
 
@@ -25,10 +22,6 @@ struct BoxPair {
   int query = 0, index = 0;
   auto operator<=>(const BoxPair&) const = default;
 };
-
-/// Whether hits in single precision are tested again. Without it boxes that miss each other by rounding may
-/// be taken for overlapping.
-enum class BoxTest { exact, rounded };
 
 class BoxTree {
  public:
@@ -45,31 +38,30 @@ class BoxTree {
   /// that were neighbours have moved apart.
   void refit(std::span<const Bounds> boxes);
 
+  /// The boxes in the order of the tree, as the constructor counts them. Eight that lie side by side from a
+  /// multiple of eight on are children of one node.
+  std::span<const int> order() const { return index_; }
+
   /// Calls callback(index) for every box that overlaps or touches `query`, in the order of the tree. Does not
   /// allocate.
-  template <BoxTest test = BoxTest::exact, class Callback>
+  template <class Callback>
   void visit(const Bounds& query, Callback&& callback) const {
-    visit_from<test>(0, query, [&](int place) { callback(index_[static_cast<std::size_t>(place)]); });
+    visit_from(0, query, [&](int place) { callback(index_[static_cast<std::size_t>(place)]); });
   }
+
+  /// Calls callback(eight, hits) for places 8 `eight` to 8 `eight` + 7 of the order, with a bit for each that
+  /// is `first` or a later one and whose box overlaps or touches `query` in single precision: boxes that miss
+  /// each other by rounding may be taken for overlapping. Does not allocate.
+  template <class Callback>
+  void visit_eights(int first, const Bounds& query, Callback&& callback) const;
 
   /// Appends a pair for every query and each box that it overlaps or touches: by query, and then in the
   /// tree's order, which refit() does not change.
-  void collect(std::span<const Bounds> queries, std::vector<BoxPair>& pairs) const {
-    collect<BoxTest::exact>(queries, 0, queries.size(), pairs);
-  }
-  /// Of the queries [begin, end) only.
-  template <BoxTest test>
-  void collect(std::span<const Bounds> queries, std::size_t begin, std::size_t end,
-               std::vector<BoxPair>& pairs) const;
+  void collect(std::span<const Bounds> queries, std::vector<BoxPair>& pairs) const;
 
   /// Appends every pair of boxes of the tree that overlap or touch each other, once: by query, the one that
   /// comes before the other in the tree's order.
-  void collect_own(std::vector<BoxPair>& pairs) const {
-    collect_own<BoxTest::exact>(0, boxes_.size(), pairs);
-  }
-  /// Of those whose query has a place in [begin, end) of the tree's order only.
-  template <BoxTest test>
-  void collect_own(std::size_t begin, std::size_t end, std::vector<BoxPair>& pairs) const;
+  void collect_own(std::vector<BoxPair>& pairs) const;
 
   /// Levels of nodes: 0 without boxes.
   int depth() const { return depth_; }
@@ -83,23 +75,18 @@ class BoxTree {
   static constexpr int width = 8;
   static constexpr int deepest = 11;  // 8^11 > 2^31
 
-  struct alignas(64) Node {
-    std::array<std::array<float, width>, 3> lower, upper;
-    std::array<int, width> child;  // a node, or ~place of a box
+  struct Node {
+    EightBoxes boxes;
+    std::array<int, width> child;  // all nodes, or all boxes: ~place
     std::uint32_t used = 0;        // a bit for each child
-  };
-
-  struct Query {
-    std::array<float, 3> lower, upper;
   };
 
   struct Builder;
 
-  static std::uint32_t overlapping(const Node& node, const Query& query);
   /// Calls callback(place) for the boxes whose place is `first` or a later one.
-  template <BoxTest test, class Callback>
+  template <class Callback>
   void visit_from(int first, const Bounds& query, Callback&& callback) const;
-  Query rounded(const Bounds& bounds) const;
+  RoundedBox rounded(const Bounds& bounds) const;
   void fit();
 
   // Boxes in the order of the tree; those of a node lie together.
@@ -112,58 +99,43 @@ class BoxTree {
   int depth_ = 0;
 };
 
-inline BoxTree::Query BoxTree::rounded(const Bounds& bounds) const {
+inline RoundedBox BoxTree::rounded(const Bounds& bounds) const {
   const Eigen::Vector3f lower = (bounds.lower - origin_).cast<float>();
   const Eigen::Vector3f upper = (bounds.upper - origin_).cast<float>();
   return {{lower.x(), lower.y(), lower.z()}, {upper.x(), upper.y(), upper.z()}};
 }
 
-inline std::uint32_t BoxTree::overlapping(const Node& node, const Query& query) {
-#if defined(__SSE2__)
-  __m128 low = _mm_castsi128_ps(_mm_set1_epi32(-1)), high = low;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const __m128 from = _mm_set1_ps(query.lower[axis]), to = _mm_set1_ps(query.upper[axis]);
-    const float *lower = node.lower[axis].data(), *upper = node.upper[axis].data();
-    low = _mm_and_ps(
-        low, _mm_and_ps(_mm_cmple_ps(_mm_load_ps(lower), to), _mm_cmple_ps(from, _mm_load_ps(upper))));
-    high = _mm_and_ps(high, _mm_and_ps(_mm_cmple_ps(_mm_load_ps(lower + 4), to),
-                                       _mm_cmple_ps(from, _mm_load_ps(upper + 4))));
-  }
-  const int mask = _mm_movemask_ps(low) | _mm_movemask_ps(high) << 4;
-  return static_cast<std::uint32_t>(mask) & node.used;
-#else
-  std::uint32_t mask = 0;
-  for (std::size_t k = 0; k < width; ++k) {
-    bool hit = true;
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      hit &= node.lower[axis][k] <= query.upper[axis] && query.lower[axis] <= node.upper[axis][k];
-    mask |= static_cast<std::uint32_t>(hit) << k;
-  }
-  return mask & node.used;
-#endif
-}
-
-template <BoxTest test, class Callback>
-void BoxTree::visit_from(int first, const Bounds& query, Callback&& callback) const {
+template <class Callback>
+void BoxTree::visit_eights(int first, const Bounds& query, Callback&& callback) const {
   if (nodes_.empty()) return;
-  const Query rounded_query = rounded(query);
+  const RoundedBox rounded_query = rounded(query);
   std::array<int, deepest*(width - 1) + 1> waiting;
   std::size_t count = 0;
   waiting[count++] = 0;
   while (count > 0) {
     const Node& node = nodes_[static_cast<std::size_t>(waiting[--count])];
-    for (std::uint32_t hits = overlapping(node, rounded_query); hits != 0; hits &= hits - 1) {
+    std::uint32_t hits = node.boxes.overlapping(rounded_query) & node.used;
+    if (node.child[0] < 0) {
+      const int place = ~node.child[0];
+      if (first > place) hits &= ~0U << (first - place);
+      if (hits != 0) callback(place / width, hits);
+      continue;
+    }
+    for (; hits != 0; hits &= hits - 1) {
       const int child = node.child[static_cast<std::size_t>(std::countr_zero(hits))];
-      if (child >= 0) {
-        if (end_[static_cast<std::size_t>(child)] > first) waiting[count++] = child;
-        continue;
-      }
-      const int place = ~child;
-      if (place < first) continue;
-      if (test == BoxTest::rounded || overlap(boxes_[static_cast<std::size_t>(place)], query))
-        callback(place);
+      if (end_[static_cast<std::size_t>(child)] > first) waiting[count++] = child;
     }
   }
+}
+
+template <class Callback>
+void BoxTree::visit_from(int first, const Bounds& query, Callback&& callback) const {
+  visit_eights(first, query, [&](int eight, std::uint32_t hits) {
+    for (; hits != 0; hits &= hits - 1) {
+      const int place = eight * width + std::countr_zero(hits);
+      if (overlap(boxes_[static_cast<std::size_t>(place)], query)) callback(place);
+    }
+  });
 }
 
 }  // namespace cloth

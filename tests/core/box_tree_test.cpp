@@ -7,7 +7,6 @@
 #include <cmath>
 #include <vector>
 
-#include "geometry/rounded_box.h"
 #include "support/random.h"
 
 namespace cloth::test::box_tree_test {
@@ -203,18 +202,31 @@ TEST(BoxTree, FindsItsOwnPairsOnce) {
   }
 }
 
-TEST(BoxTree, CollectsItsOwnPairsByPartsInItsOrder) {
+/// Every box that visit_eights() finds, by its place in the tree's order.
+std::vector<int> places_of_eights(const BoxTree& tree, int first, const Bounds& query) {
+  std::vector<int> places;
+  tree.visit_eights(first, query, [&](int eight, std::uint32_t hits) {
+    EXPECT_NE(hits, 0u);
+    for (int k = 0; k < 32; ++k)
+      if ((hits >> k & 1) != 0) places.push_back(8 * eight + k);
+  });
+  std::sort(places.begin(), places.end());
+  return places;
+}
+
+TEST(BoxTree, FindsEightsFromAPlaceOn) {
   Random random;
-  const BoxTree tree(random_boxes(700, 0.3, random));
-  std::vector<BoxPair> whole, parts;
-  tree.collect_own(whole);
-  std::size_t begin = 0;
-  for (const std::size_t end : {1u, 300u, 699u, 700u}) {
-    tree.collect_own<BoxTest::exact>(begin, end, parts);
-    begin = end;
+  for (const int count : {1, 7, 8, 9, 63, 700}) {
+    const Boxes boxes = random_boxes(static_cast<std::size_t>(count), 0.3, random);
+    const BoxTree tree(boxes);
+    ASSERT_EQ(tree.order().size(), boxes.size());
+    const Bounds everywhere = bounds_of(Vec3(-9, -9, -9), Vec3(9, 9, 9));
+    for (const int first : {0, 1, 6, 8, count / 2, count - 1, count}) {
+      std::vector<int> later;
+      for (int place = first; place < count; ++place) later.push_back(place);
+      EXPECT_EQ(places_of_eights(tree, first, everywhere), later) << first << " of " << count;
+    }
   }
-  EXPECT_EQ(parts, whole);
-  EXPECT_GT(whole.size(), 700u);
 }
 
 /// Far from the origin single precision has millimetres.
@@ -225,8 +237,10 @@ TEST(BoxTree, MissesNoneByRoundingAndTakesFewMore) {
   boxes.push_back(bounds_of(Vec3(-3e4, 0, 0)));
   const BoxTree tree(boxes);
   std::vector<BoxPair> exact, rounded;
-  tree.collect<BoxTest::exact>(boxes, 0, boxes.size(), exact);
-  tree.collect<BoxTest::rounded>(boxes, 0, boxes.size(), rounded);
+  tree.collect(boxes, exact);
+  for (int q = 0; q < static_cast<int>(boxes.size()); ++q)
+    for (const int place : places_of_eights(tree, 0, boxes[static_cast<std::size_t>(q)]))
+      rounded.push_back({q, tree.order()[static_cast<std::size_t>(place)]});
   for (auto* pairs : {&exact, &rounded}) std::sort(pairs->begin(), pairs->end());
   EXPECT_TRUE(std::includes(rounded.begin(), rounded.end(), exact.begin(), exact.end()));
   EXPECT_GT(rounded.size(), exact.size()) << "nothing was rounded";
@@ -306,32 +320,6 @@ TEST(BoxTree, HasOneBoxAtTheTopAndTheGivenOnesAtTheBottom) {
   EXPECT_EQ(drawn_boxes(tree, 2).size(), 64U);
   EXPECT_EQ(drawn_boxes(tree, 3).size(), 512U);
   for (const Bounds& box : drawn_boxes(tree, 2)) EXPECT_TRUE(overlap(box, all));
-}
-
-TEST(RoundedBox, OverlapsWhereTheBoxDoesAndHardlyElsewhere) {
-  Random random;
-  int overlapping = 0, apart = 0;
-  for (const double far : {0.0, 1e3, 1e7}) {
-    Boxes boxes = random_boxes(200, 0.3, random);
-    for (std::size_t k = 0; k + 1 < 100; k += 2) {  // boxes that touch in a face
-      boxes[k + 1] = boxes[k];
-      boxes[k + 1].lower.x() = boxes[k].upper.x(), boxes[k + 1].upper.x() = boxes[k].upper.x() + 0.1;
-    }
-    for (Bounds& box : boxes) box.lower.array() += far, box.upper.array() += far;
-    for (const Bounds& a : boxes)
-      for (const Bounds& b : boxes) {
-        const bool may = RoundedLimits(RoundedBox(a)).may_overlap(RoundedBox(b));
-        if (overlap(a, b)) {
-          ASSERT_TRUE(may);
-          ++overlapping;
-        } else if (far == 0 && !overlap(a, b.grown(single_precision))) {
-          ASSERT_FALSE(may);
-          ++apart;
-        }
-      }
-  }
-  EXPECT_GT(overlapping, 1000);
-  EXPECT_GT(apart, 1000);
 }
 
 }  // namespace

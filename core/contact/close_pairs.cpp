@@ -1,6 +1,7 @@
 #include "contact/close_pairs.h"
 
 #include <algorithm>
+#include <numeric>
 
 #include "contact/obstacle_body.h"
 #include "geometry/at.h"
@@ -86,6 +87,7 @@ void ClosePairs::collect_candidates(const PairQuery& now) {
     }
   });
   drop_far_candidates();
+  take_features(cached_sides_);
   cached_position_ = now.position;
   cached_poses_ = now.poses;
   moved_.assign(range_.size(), 0);
@@ -93,8 +95,9 @@ void ClosePairs::collect_candidates(const PairQuery& now) {
 
 /// Those that cannot come within their reach while the candidates hold.
 void ClosePairs::drop_far_candidates() {
-  spent_ = cached_range_;
-  spread(cached_, spent_);
+  features_.resize(at(first_face()) + cloth_.triangles.size());
+  std::iota(features_.begin(), features_.end(), 0);
+  spread(cached_range_, spent_);
   std::size_t kept = 0;
   for (std::size_t k = 0; k < cached_.size(); ++k) {
     const Sides sides = cached_sides_[k];
@@ -105,13 +108,25 @@ void ClosePairs::drop_far_candidates() {
   cached_.resize(kept), cached_sides_.resize(kept), cached_room_.resize(kept);
 }
 
+/// Of sides by the features' numbers, places in features_, which has no others.
+void ClosePairs::take_features(std::vector<Sides>& sides) {
+  place_of_feature_.assign(at(first_face()) + cloth_.triangles.size(), -1);
+  for (const Sides& both : sides) place_of_feature_[at(both.near)] = place_of_feature_[at(both.far)] = 0;
+  features_.clear();
+  for (std::size_t f = 0; f < place_of_feature_.size(); ++f) {
+    if (place_of_feature_[f] < 0) continue;
+    place_of_feature_[f] = static_cast<int>(features_.size());
+    features_.push_back(static_cast<int>(f));
+  }
+  for (Sides& both : sides) both = {place_of_feature_[at(both.near)], place_of_feature_[at(both.far)]};
+}
+
 double ClosePairs::reach_of(const FeaturePair& pair, const SweptBounds& swept) const {
   return pair.obstacle == FeaturePair::cloth_itself ? swept.own_reach : swept.reach;
 }
 
 ClosePairs::Sides ClosePairs::sides_of(const FeaturePair& pair) const {
-  const int none = static_cast<int>(range_.size()), edges = none + 1,
-            faces = edges + static_cast<int>(cloth_.edges.size());
+  const int none = first_edge() - 1, edges = first_edge(), faces = first_face();
   const bool is_own = pair.obstacle == FeaturePair::cloth_itself;
   switch (pair.kind) {
     case PairKind::vertex_plane:
@@ -128,38 +143,37 @@ ClosePairs::Sides ClosePairs::sides_of(const FeaturePair& pair) const {
   return {none, none};
 }
 
-/// The features of the candidates: of some scenes none has edges or faces. Returns whether some candidate may
-/// be within its reach.
+/// Returns whether some candidate may be within its reach.
 bool ClosePairs::add_spent() {
-  spent_.clear();
+  spent_of_particles_.resize(range_.size());
   most_spent_ = 0;
   for (std::size_t i = 0; i < range_.size(); ++i) {
-    spent_.push_back(moved_[i] + range_[i]);
-    most_spent_ = std::max(most_spent_, spent_[i]);
+    spent_of_particles_[i] = moved_[i] + range_[i];
+    most_spent_ = std::max(most_spent_, spent_of_particles_[i]);
   }
   most_spent_ *= 2;
   if (std::none_of(cached_room_.begin(), cached_room_.end(),
                    [&](double room) { return room <= most_spent_; }))
     return false;
-  spread(cached_, spent_);
+  spread(spent_of_particles_, spent_);
   return true;
 }
 
-void ClosePairs::find_ranges(const std::vector<FeaturePair>& candidates) {
-  range_of_feature_ = range_;
-  spread(candidates, range_of_feature_);
-}
-
-/// From the vertices to edges and faces, which candidates of vertices with solids do not have.
-void ClosePairs::spread(const std::vector<FeaturePair>& candidates, std::vector<double>& of_features) const {
-  of_features.push_back(0);
-  if (std::all_of(candidates.begin(), candidates.end(),
-                  [](const FeaturePair& pair) { return shape_of(pair.kind) == PairShape::point_and_solid; }))
-    return;
-  for (const auto& [a, b] : cloth_.edges)
-    of_features.push_back(std::max(of_features[at(a)], of_features[at(b)]));
-  for (const auto& [a, b, c] : cloth_.triangles)
-    of_features.push_back(std::max({of_features[at(a)], of_features[at(b)], of_features[at(c)]}));
+/// The largest of each feature's particles; 0 of an obstacle's.
+void ClosePairs::spread(const std::vector<double>& of_particles, std::vector<double>& of_features) const {
+  of_features.clear();
+  const auto particle = [&](int i) { return of_particles[at(i)]; };
+  auto next = features_.begin();
+  for (; next != features_.end() && *next + 1 < first_edge(); ++next) of_features.push_back(particle(*next));
+  if (next != features_.end() && *next < first_edge()) of_features.push_back(0), ++next;
+  for (; next != features_.end() && *next < first_face(); ++next) {
+    const auto& [a, b] = cloth_.edges[at(*next - first_edge())];
+    of_features.push_back(std::max(particle(a), particle(b)));
+  }
+  for (; next != features_.end(); ++next) {
+    const auto& [a, b, c] = cloth_.triangles[at(*next - first_face())];
+    of_features.push_back(std::max({particle(a), particle(b), particle(c)}));
+  }
 }
 
 /// Whether the motion since the candidates were found, and in this round, leaves one beyond its reach.
@@ -217,9 +231,9 @@ void ClosePairs::separate_part(const PairQuery& now, Part& part) const {
 
 /// Of the candidates, with the sides of each, those that are not beyond(k). The result is that of the first
 /// part.
-template <class SidesOf, class Beyond>
+template <class Beyond>
 void ClosePairs::separate_all(const PairQuery& now, const std::vector<FeaturePair>& candidates,
-                              const SidesOf& sides_of, const Beyond& beyond) {
+                              const std::vector<Sides>& sides, const Beyond& beyond) {
   const int shares =
       shares_.run(team_, candidates.size(), least_pairs, [&](int share, std::size_t begin, std::size_t end) {
         Part& part = parts_[at(share)];
@@ -227,7 +241,7 @@ void ClosePairs::separate_all(const PairQuery& now, const std::vector<FeaturePai
         for (std::size_t k = begin; k < end; ++k) {
           if (beyond(k)) continue;
           part.pairs.push_back(candidates[k]);
-          part.motion.push_back(motion_of(candidates[k], sides_of(k)));
+          part.motion.push_back(motion_of(candidates[k], sides[k]));
         }
         separate_part(now, part);
       });
@@ -246,18 +260,19 @@ void ClosePairs::find(const PairQuery& now, std::vector<FeaturePair>& pairs,
   measure(now);
   if (longest_ > furthest_reach(now.swept) || !all_at_rest(now)) {
     search_.find(now.swept, now.paths, found_);
-    find_ranges(found_);
-    separate_all(
-        now, found_, [&](std::size_t k) { return sides_of(found_[k]); }, [](std::size_t) { return false; });
+    cached_range_.clear();  // features_ are no longer those of the cached candidates
+    found_sides_.clear();
+    for (const FeaturePair& pair : found_) found_sides_.push_back(sides_of(pair));
+    take_features(found_sides_);
+    spread(range_, range_of_feature_);
+    separate_all(now, found_, found_sides_, [](std::size_t) { return false; });
   } else {
     if (cached_position_.size() == now.position.size())
       for (std::size_t i = 0; i < moved_.size(); ++i)
         moved_[i] = (now.position[i] - cached_position_[i]).norm();
     if (!holds(now)) collect_candidates(now);
-    if (add_spent()) find_ranges(cached_);
-    separate_all(
-        now, cached_, [&](std::size_t k) { return cached_sides_[k]; },
-        [&](std::size_t k) { return is_beyond(k); });
+    if (add_spent()) spread(range_, range_of_feature_);
+    separate_all(now, cached_, cached_sides_, [&](std::size_t k) { return is_beyond(k); });
   }
   pairs.swap(parts_[0].pairs), separations.swap(parts_[0].separations), waiting.swap(parts_[0].waiting);
 }

@@ -61,7 +61,7 @@ class ClosePairs {
   const PairSearch& search() const { return search_; }
 
  private:
-  /// The features of a cached candidate as places in `spent_`; an obstacle's is that of the 0.
+  /// The features of a candidate: their numbers, or places in `features_`.
   struct Sides {
     int near, far;
   };
@@ -84,16 +84,19 @@ class ClosePairs {
   Sides sides_of(const FeaturePair& pair) const;
   void drop_far_candidates();
   bool add_spent();
-  void find_ranges(const std::vector<FeaturePair>& candidates);
-  void spread(const std::vector<FeaturePair>& candidates, std::vector<double>& of_features) const;
+  void take_features(std::vector<Sides>& sides);
+  void spread(const std::vector<double>& of_particles, std::vector<double>& of_features) const;
   bool is_beyond(std::size_t kept) const;
   double motion_of(const FeaturePair& pair, const Sides& sides) const;
   Role role_of(const FeaturePair& pair, const Separation& separation, double motion,
                const SweptBounds& swept) const;
   void separate_part(const PairQuery& now, Part& part) const;
-  template <class SidesOf, class Beyond>
-  void separate_all(const PairQuery& now, const std::vector<FeaturePair>& candidates, const SidesOf& sides_of,
-                    const Beyond& beyond);
+  template <class Beyond>
+  void separate_all(const PairQuery& now, const std::vector<FeaturePair>& candidates,
+                    const std::vector<Sides>& sides, const Beyond& beyond);
+  // Numbers of features of the cloth: its vertices, one of all features of obstacles, edges, faces.
+  int first_edge() const { return static_cast<int>(range_.size()) + 1; }
+  int first_face() const { return first_edge() + static_cast<int>(cloth_.edges.size()); }
 
   const Surface& cloth_;
   const std::vector<ObstacleBody>& bodies_;
@@ -103,20 +106,22 @@ class ClosePairs {
   std::vector<Part> parts_{1};  ///< of each thread
 
   std::vector<double> range_;             ///< m, bound of each particle's displacement in this round
-  std::vector<double> range_of_feature_;  ///< m, of each vertex of the cloth; 0; of each edge and face where
-                                          ///< candidates have some
+  std::vector<int> features_;             ///< of the candidates, by their numbers, ascending
+  std::vector<int> place_of_feature_;     ///< scratch
+  std::vector<double> range_of_feature_;  ///< m, of features_
   std::vector<double> obstacle_paths_;    ///< m, of each: bound of its points' displacement in this substep
   std::vector<double> moved_;       ///< m, displacement of each particle since the candidates were found
   double longest_ = 0;              ///< m, longest of the particles' displacements
   std::vector<FeaturePair> found_;  ///< candidates that are not cached
+  std::vector<Sides> found_sides_;  ///< of each
 
   std::vector<FeaturePair> cached_;  ///< candidates
   std::vector<Sides> cached_sides_;  ///< of each
   std::vector<double> cached_room_;  ///< m, of each, its distance at cached_position_ beyond its reach
-  /// m, of each vertex, then of each edge and face of the cloth, how far it may be at the end of this round
-  /// from where it was then; and 0.
-  std::vector<double> spent_;
-  double most_spent_ = 0;  ///< m, two particles that went furthest
+  std::vector<double>
+      spent_;  ///< m, of features_, how far each may be at the end of this round from where it was then
+  std::vector<double> spent_of_particles_;  ///< m, the same of particles
+  double most_spent_ = 0;                   ///< m, two particles that went furthest
   Vec3Field cached_position_;
   std::vector<double>
       cached_range_;  ///< m, displacement of each particle up to which the candidates are complete

@@ -96,10 +96,9 @@ void PairBatch::separate(std::span<const FeaturePair> pairs, const NearDistances
                          const PairMotion& motion, Separation* separations, PairNeed* needs) {
   const auto need_of = [&](std::size_t k, const auto& closest) {
     const FeaturePair& pair = pairs[k];
-    const double distance = distance_of(pair, closest.squared_distance, setting_), reach = motion.reach(pair);
-    if (distance > reach + motion.most[k]) return PairNeed::apart;
-    if (!(distance < reach && distance > 2 * (1 + of_closest_points) * motion.most[k]))
-      return PairNeed::separation;
+    const double distance = distance_of(pair, closest.squared_distance, setting_);
+    if (distance > motion.reach(pair) + motion.most[k]) return PairNeed::apart;
+    if (!(distance > 2 * (1 + of_closest_points) * motion.most[k])) return PairNeed::separation;
     if constexpr (std::is_same_v<std::decay_t<decltype(closest)>, SegmentSegment>)
       return is_in_charge(closest) ? PairNeed::separation : PairNeed::waits;
     else

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "contact/feature_sides.h"
 #include "geometry/at.h"
 
 namespace cloth {
@@ -84,21 +85,6 @@ void add_weights(Separation& s, const std::array<double, N>& weights, double sig
   const std::size_t first = sign > 0 ? 0 : at(s.near_count);
   for (std::size_t k = 0; k < N; ++k) s.weight[first + k] = sign * weights[k];
 }
-
-/// Cloth and obstacle as two types with the same members: a surface and the positions of its vertices (m).
-struct ClothSide {
-  const Surface& surface;
-  const Vec3Field& field;
-  Vec3 operator()(int vertex) const { return field[at(vertex)]; }
-};
-
-struct BodySide {
-  const Surface& surface;
-  const std::vector<Vec3>& vertices;
-  const Pose& pose;
-  const Vec3* placed;
-  Vec3 operator()(int vertex) const { return placed ? placed[vertex] : pose.at(vertices[at(vertex)]); }
-};
 
 void set_near_level(Separation& s, const ClothSide& cloth) {
   s.near_level = std::numeric_limits<double>::infinity();
@@ -233,24 +219,6 @@ double radius_of(const FeaturePair& pair, const PairSetting& setting) {
   return setting.poses[at(pair.obstacle)].stretch.x() * setting.bodies[at(pair.obstacle)].radius;
 }
 
-/// The points of a pair with a far side that is a surface.
-template <class Far>
-FeaturePoints points_with(const FeaturePair& pair, const ClothSide& cloth, const Far& far) {
-  if (pair.kind == PairKind::edge_edge) {
-    const auto& [a, b] = cloth.surface.edges[at(pair.feature)];
-    const auto& [c, d] = far.surface.edges[at(pair.far_feature)];
-    return {cloth(a), cloth(b), far(c), far(d)};
-  }
-  const auto& [a, b, c] = far.surface.triangles[at(pair.far_feature)];
-  return {cloth(pair.feature), far(a), far(b), far(c)};
-}
-
-BodySide body_side(const FeaturePair& pair, const PairSetting& setting) {
-  const ObstacleBody& body = setting.bodies[at(pair.obstacle)];
-  return {body.surface, body.vertices, setting.poses[at(pair.obstacle)],
-          setting.placed_vertices(pair.obstacle)};
-}
-
 }  // namespace
 
 PairParticles particles_of(const FeaturePair& pair, const Surface& cloth) {
@@ -279,15 +247,9 @@ PairParticles particles_of(const FeaturePair& pair, const Surface& cloth) {
 }
 
 FeaturePoints points_of(const FeaturePair& pair, const PairSetting& setting) {
-  const ClothSide cloth{setting.cloth, setting.position};
-  if (is_own(pair)) return points_with(pair, cloth, cloth);
-  if (pair.kind != PairKind::face_sphere && pair.kind != PairKind::face_vertex)
-    return points_with(pair, cloth, body_side(pair, setting));
-  const auto& [a, b, c] = setting.cloth.triangles[at(pair.feature)];
-  const Vec3 point = pair.kind == PairKind::face_sphere
-                         ? setting.poses[at(pair.obstacle)].at(setting.bodies[at(pair.obstacle)].center)
-                         : body_side(pair, setting)(pair.far_feature);
-  return {point, cloth(a), cloth(b), cloth(c)};
+  FeaturePoints points;
+  with_points(pair, setting, [&](const auto& points_of) { points = points_of(pair); });
+  return points;
 }
 
 Separation separation_of(const FeaturePair& pair, const FeaturePoints& points, const SegmentSegment& closest,

@@ -1,5 +1,6 @@
 #include "contact/separations.h"
 
+#include "contact/feature_sides.h"
 #include "geometry/at.h"
 #include "kernels/instruction_set.h"
 
@@ -63,21 +64,28 @@ void PairBatch::finish_triangles(const Take& take) {
   triangles_.count = 0;
 }
 
-/// take(k, points, closest) for pairs that have closest points by vectors, alone(k) for the others.
+/// take(k, points, closest) for pairs that have closest points by vectors, alone(k) for the others: by runs
+/// of pairs of one kind with one obstacle.
 template <class Take, class Alone>
 void PairBatch::go_through(std::span<const FeaturePair> pairs, const Take& take, const Alone& alone) {
-  for (std::size_t k = 0; k < pairs.size(); ++k) {
-    const FeaturePair& pair = pairs[k];
-    switch (shape_of(pair.kind)) {
-      case PairShape::segments:
-        if (add(k, points_of(pair, setting_), segments_)) finish_segments(take);
-        break;
-      case PairShape::point_and_triangle:
-        if (add(k, points_of(pair, setting_), triangles_)) finish_triangles(take);
-        break;
-      case PairShape::point_and_solid:
-        alone(k);
+  for (std::size_t begin = 0, end = 0; begin < pairs.size(); begin = end) {
+    const FeaturePair& first = pairs[begin];
+    while (end < pairs.size() && pairs[end].kind == first.kind && pairs[end].obstacle == first.obstacle)
+      ++end;
+    const PairShape shape = shape_of(first.kind);
+    if (shape == PairShape::point_and_solid) {
+      for (std::size_t k = begin; k < end; ++k) alone(k);
+      continue;
     }
+    with_points(first, setting_, [&](const auto& points_of) {
+      for (std::size_t k = begin; k < end; ++k) {
+        if (shape == PairShape::segments) {
+          if (add(k, points_of(pairs[k]), segments_)) finish_segments(take);
+        } else {
+          if (add(k, points_of(pairs[k]), triangles_)) finish_triangles(take);
+        }
+      }
+    });
   }
   if (segments_.count > 0) finish_segments(take);
   if (triangles_.count > 0) finish_triangles(take);

@@ -237,11 +237,16 @@ void ClosePairs::separate_all(const PairQuery& now, const std::vector<FeaturePai
   const int shares =
       shares_.run(team_, candidates.size(), least_pairs, [&](int share, std::size_t begin, std::size_t end) {
         Part& part = parts_[at(share)];
-        part.pairs.clear(), part.motion.clear();
+        part.chosen.resize(std::max(part.chosen.size(), end - begin));
+        std::size_t chosen = 0;  // without branches: nobody can predict them
         for (std::size_t k = begin; k < end; ++k) {
-          if (beyond(k)) continue;
-          part.pairs.push_back(candidates[k]);
-          part.motion.push_back(motion_of(candidates[k], sides[k]));
+          part.chosen[chosen] = k;
+          chosen += beyond(k) ? 0 : 1;
+        }
+        part.pairs.resize(chosen), part.motion.resize(chosen);
+        for (std::size_t j = 0; j < chosen; ++j) {
+          const std::size_t k = part.chosen[j];
+          part.pairs[j] = candidates[k], part.motion[j] = motion_of(candidates[k], sides[k]);
         }
         separate_part(now, part);
       });

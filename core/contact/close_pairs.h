@@ -70,8 +70,9 @@ class ClosePairs {
     std::vector<WaitingPair> waiting;
     std::vector<Separation> separations;
     // scratch, of each pair before those that do not act are dropped
-    std::vector<Separation> every;  ///< may be longer
-    std::vector<double> motion;     ///< m, see motion_of()
+    std::vector<Separation> every;    ///< may be longer
+    std::vector<double> motion;       ///< m, see motion_of()
+    std::vector<std::size_t> chosen;  ///< of the candidates; may be longer
     std::vector<PairNeed> needs;
   };
   enum class Role { none, waits, acts };

@@ -1,5 +1,7 @@
 #include "contact/separations.h"
 
+#include <tuple>
+
 #include "contact/feature_sides.h"
 #include "geometry/at.h"
 #include "kernels/instruction_set.h"
@@ -38,11 +40,11 @@ void PairBatch::finish_segments(const Take& take) {
   const ClosestBlock& block = segments_.block;
   active_kernels<ClosestKernels>().of_segments(segments_.block);
   for (std::size_t k = 0; k < at(segments_.count); ++k) {
-    const FeaturePoints points = points_in(block, k);
+    const auto points = [&] { return points_in(block, k); };
     const SegmentSegment closest = block.is_sound[k] != 0
                                        ? SegmentSegment{block.weight[0][k], block.weight[1][k],
                                                         separation_in(block, k), block.squared_distance[k]}
-                                       : closest_of_segments(points[0], points[1], points[2], points[3]);
+                                       : std::apply(closest_of_segments, points());
     take(segments_.item[k], points, closest);
   }
   segments_.count = 0;
@@ -53,12 +55,12 @@ void PairBatch::finish_triangles(const Take& take) {
   const ClosestBlock& block = triangles_.block;
   active_kernels<ClosestKernels>().on_triangles(triangles_.block);
   for (std::size_t k = 0; k < at(triangles_.count); ++k) {
-    const FeaturePoints points = points_in(block, k);
+    const auto points = [&] { return points_in(block, k); };
     const PointTriangle closest =
         block.is_sound[k] != 0 ? PointTriangle{{block.weight[0][k], block.weight[1][k], block.weight[2][k]},
                                                separation_in(block, k),
                                                block.squared_distance[k]}
-                               : closest_on_triangle(points[0], points[1], points[2], points[3]);
+                               : std::apply(closest_on_triangle, points());
     take(triangles_.item[k], points, closest);
   }
   triangles_.count = 0;
@@ -94,7 +96,7 @@ void PairBatch::go_through(std::span<const FeaturePair> pairs, const Take& take,
 void PairBatch::find_distances(std::span<const FeaturePair> pairs, double* distances) {
   go_through(
       pairs,
-      [&](std::size_t k, const FeaturePoints&, const auto& closest) {
+      [&](std::size_t k, const auto&, const auto& closest) {
         distances[k] = distance_of(pairs[k], closest.squared_distance, setting_);
       },
       [&](std::size_t k) { distances[k] = cloth::separate(pairs[k], setting_, 0).distance; });
@@ -114,10 +116,10 @@ void PairBatch::separate(std::span<const FeaturePair> pairs, const NearDistances
   };
   go_through(
       pairs,
-      [&](std::size_t k, const FeaturePoints& points, const auto& closest) {
+      [&](std::size_t k, const auto& points, const auto& closest) {
         needs[k] = need_of(k, closest);
         if (needs[k] == PairNeed::separation)
-          separations[k] = separation_of(pairs[k], points, closest, setting_, within(pairs[k]));
+          separations[k] = separation_of(pairs[k], points(), closest, setting_, within(pairs[k]));
       },
       [&](std::size_t k) {
         needs[k] = PairNeed::separation;
@@ -129,8 +131,8 @@ void PairBatch::separate(std::span<const FeaturePair> pairs, const NearDistances
                          Separation* separations) {
   go_through(
       pairs,
-      [&](std::size_t k, const FeaturePoints& points, const auto& closest) {
-        separations[k] = separation_of(pairs[k], points, closest, setting_, within(pairs[k]));
+      [&](std::size_t k, const auto& points, const auto& closest) {
+        separations[k] = separation_of(pairs[k], points(), closest, setting_, within(pairs[k]));
       },
       [&](std::size_t k) { separations[k] = cloth::separate(pairs[k], setting_, within(pairs[k])); });
 }

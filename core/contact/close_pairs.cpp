@@ -146,14 +146,12 @@ ClosePairs::Sides ClosePairs::sides_of(const FeaturePair& pair) const {
 /// Returns whether some candidate may be within its reach.
 bool ClosePairs::add_spent() {
   spent_of_particles_.resize(range_.size());
-  most_spent_ = 0;
+  double most_spent = 0;  // of two particles
   for (std::size_t i = 0; i < range_.size(); ++i) {
     spent_of_particles_[i] = moved_[i] + range_[i];
-    most_spent_ = std::max(most_spent_, spent_of_particles_[i]);
+    most_spent = std::max(most_spent, 2 * spent_of_particles_[i]);
   }
-  most_spent_ *= 2;
-  if (std::none_of(cached_room_.begin(), cached_room_.end(),
-                   [&](double room) { return room <= most_spent_; }))
+  if (std::none_of(cached_room_.begin(), cached_room_.end(), [&](double room) { return room <= most_spent; }))
     return false;
   spread(spent_of_particles_, spent_);
   return true;
@@ -178,8 +176,7 @@ void ClosePairs::spread(const std::vector<double>& of_particles, std::vector<dou
 
 /// Whether the motion since the candidates were found, and in this round, leaves one beyond its reach.
 bool ClosePairs::is_beyond(std::size_t k) const {
-  const double room = cached_room_[k];
-  return room > most_spent_ || room > spent_[at(cached_sides_[k].near)] + spent_[at(cached_sides_[k].far)];
+  return cached_room_[k] > spent_[at(cached_sides_[k].near)] + spent_[at(cached_sides_[k].far)];
 }
 
 /// m, bound of what this round's motion takes from the distance of a pair.
@@ -276,8 +273,12 @@ void ClosePairs::find(const PairQuery& now, std::vector<FeaturePair>& pairs,
       for (std::size_t i = 0; i < moved_.size(); ++i)
         moved_[i] = (now.position[i] - cached_position_[i]).norm();
     if (!holds(now)) collect_candidates(now);
-    if (add_spent()) spread(range_, range_of_feature_);
-    separate_all(now, cached_, cached_sides_, [&](std::size_t k) { return is_beyond(k); });
+    if (add_spent()) {
+      spread(range_, range_of_feature_);
+      separate_all(now, cached_, cached_sides_, [&](std::size_t k) { return is_beyond(k); });
+    } else {
+      parts_[0].pairs.clear(), parts_[0].separations.clear(), parts_[0].waiting.clear();
+    }
   }
   pairs.swap(parts_[0].pairs), separations.swap(parts_[0].separations), waiting.swap(parts_[0].waiting);
 }

@@ -122,7 +122,6 @@ class ClosePairs {
   std::vector<double>
       spent_;  ///< m, of features_, how far each may be at the end of this round from where it was then
   std::vector<double> spent_of_particles_;  ///< m, the same of particles
-  double most_spent_ = 0;                   ///< m, two particles that went furthest
   Vec3Field cached_position_;
   std::vector<double>
       cached_range_;  ///< m, displacement of each particle up to which the candidates are complete

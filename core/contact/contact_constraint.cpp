@@ -2,14 +2,6 @@
 
 namespace cloth {
 
-void add_impulse(const ContactConstraint& contact, const std::vector<double>& inverse_mass,
-                 const Vec3& impulse, Vec3Field& value) {
-  for (std::size_t k = 0; k < at(contact.count); ++k) {
-    const auto i = at(contact.particle[k]);
-    value.add(i, contact.weight[k] * inverse_mass[i] * impulse);
-  }
-}
-
 double mobility_of(const ContactConstraint& contact, const std::vector<double>& inverse_mass) {
   double mobility = 0;
   for (std::size_t k = 0; k < at(contact.count); ++k)

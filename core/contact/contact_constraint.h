@@ -25,7 +25,8 @@ struct ContactConstraint {
   double normal_impulse = 0;       ///< accumulated, >= 0
   Vec3 friction_impulse{0, 0, 0};  ///< accumulated, tangential
 
-  Vec3 point(const Vec3Field& value) const {
+  // Inlined always: compilers count Eigen's expressions as long.
+  [[gnu::always_inline]] Vec3 point(const Vec3Field& value) const {
     Vec3 sum = Vec3::Zero();
     for (int k = 0; k < count; ++k) sum += weight[at(k)] * value[at(particle[at(k)])];
     return sum;
@@ -51,8 +52,14 @@ struct ContactConstraint {
 };
 
 /// Adds the effect of an impulse at the contact's point to `value`.
-void add_impulse(const ContactConstraint& contact, const std::vector<double>& inverse_mass,
-                 const Vec3& impulse, Vec3Field& value);
+[[gnu::always_inline]] inline void add_impulse(const ContactConstraint& contact,
+                                               const std::vector<double>& inverse_mass, const Vec3& impulse,
+                                               Vec3Field& value) {
+  for (std::size_t k = 0; k < at(contact.count); ++k) {
+    const auto i = at(contact.particle[k]);
+    value.add(i, contact.weight[k] * inverse_mass[i] * impulse);
+  }
+}
 
 double mobility_of(const ContactConstraint& contact, const std::vector<double>& inverse_mass);
 

@@ -14,7 +14,7 @@ namespace cloth {
 namespace {
 
 /// Overlaps, and features to be looked for in a hierarchy, that are worth a thread of their own.
-constexpr std::size_t least_share = 250, least_queries = 64;
+constexpr std::size_t least_share = 100, least_queries = 64;
 
 /// m, largest distance of an arc from its chord, for a point that rotates at `radius` metres from the axis.
 double bulge(const PoseInterpolation& path, double radius) {
@@ -416,11 +416,11 @@ template <class Collect>
 void PairSearch::collect(std::size_t queries, Meeting& meeting, const Collect& collect_part) {
   const int shares =
       in_shares(team_, queries, least_queries, [&](int share, std::size_t begin, std::size_t end) {
-        parts_[at(share)].overlaps.clear();
-        collect_part(begin, end, parts_[at(share)].overlaps);
+        std::vector<RegionOverlap>& part = share == 0 ? meeting.overlaps : parts_[at(share)].overlaps;
+        part.clear();
+        collect_part(begin, end, part);
       });
-  meeting.overlaps.clear();
-  for (int share = 0; share < shares; ++share)
+  for (int share = 1; share < shares; ++share)
     meeting.overlaps.insert(meeting.overlaps.end(), parts_[at(share)].overlaps.begin(),
                             parts_[at(share)].overlaps.end());
 }
@@ -434,6 +434,7 @@ void PairSearch::take_near(const Meeting& meeting, const Regions& far, std::vect
   const auto take = [&](int share, std::size_t begin, std::size_t end) {
     Part& part = parts_[at(share)];
     part.pairs.clear();
+    std::vector<FeaturePair>& taken = share == 0 ? pairs : part.pairs;
     for (std::size_t next = begin; begin < end; begin = next) {
       const int query = overlaps[begin].query;
       while (next < end && overlaps[next].query == query) ++next;
@@ -441,11 +442,11 @@ void PairSearch::take_near(const Meeting& meeting, const Regions& far, std::vect
       const int found = find(far.data(), overlaps.data() + begin, static_cast<int>(next - begin),
                              region_of(cloth_, meeting.near(), query, near_), part.places.data());
       for (int k = 0; k < found; ++k)
-        part.pairs.push_back({meeting.obstacle, meeting.kind, query, tree.order()[at(part.places[at(k)])]});
+        taken.push_back({meeting.obstacle, meeting.kind, query, tree.order()[at(part.places[at(k)])]});
     }
   };
   const int shares = in_shares(team_, overlaps.size(), least_share, take);
-  for (int share = 0; share < shares; ++share)
+  for (int share = 1; share < shares; ++share)
     pairs.insert(pairs.end(), parts_[at(share)].pairs.begin(), parts_[at(share)].pairs.end());
 }
 

@@ -15,7 +15,9 @@ namespace {
 
 /// Radius of a capsule as a part of the thickness, or of the displacement if that gives more.
 constexpr double margin_part = 0.1, aside_part = 0.1;
-constexpr double skin_part = 0.35;  ///< of a mean edge, see PairSearch
+/// Of a mean edge, see PairSearch. Of meshes, whose features are often smaller than the cloth's, more would
+/// find too many overlaps.
+constexpr double skin_part = 0.7, skin_part_with_meshes = 0.35;
 /// Ten times as much lets a damped cloth creep over a ball by 0.4 mm in a second.
 constexpr double solver_tolerance_part = 1e-6;
 constexpr int solver_sweeps = 20;
@@ -39,6 +41,11 @@ double reach_of(const Obstacle& obstacle, const Vec3Field& position) {
   for (std::size_t i = 0; i < position.size(); ++i)
     reach = std::max(reach, (position[i] - obstacle.point).norm());
   return reach;
+}
+
+bool has_mesh(const std::vector<ObstacleBody>& bodies) {
+  return std::any_of(bodies.begin(), bodies.end(),
+                     [](const ObstacleBody& body) { return body.kind == BodyKind::surface; });
 }
 
 double mean_edge(const Surface& surface, const Vec3Field& position) {
@@ -75,8 +82,9 @@ ContinuousContact::ContinuousContact(const Scene& scene, const ClothSystem& syst
       bodies_(bodies_of(scene)),
       obstacles_(scene.obstacles),
       transitions_(std::move(transitions)),
-      close_pairs_(surface_, system.start, bodies_, scene.self_contact.has_value(),
-                   skin_part * mean_edge(surface_, system.start)),
+      close_pairs_(
+          surface_, system.start, bodies_, scene.self_contact.has_value(),
+          (has_mesh(bodies_) ? skin_part_with_meshes : skin_part) * mean_edge(surface_, system.start)),
       long_steps_(long_steps),
       mean_edge_(mean_edge(surface_, system.start)),
       thickness_transition_(thickness),
@@ -92,11 +100,9 @@ ContinuousContact::ContinuousContact(const Scene& scene, const ClothSystem& syst
     full_self_thickness_ = scene.self_contact->thickness;
     self_friction_ = scene.self_contact->friction;
   }
-  const bool has_mesh = std::any_of(obstacles_.begin(), obstacles_.end(),
-                                    [](const Obstacle& o) { return shape_of(o).body == BodyKind::surface; });
   is_staggered_ = needs_stagger(obstacles_, surface_, system.start);
   set_thickness(time);
-  longest_path_ = scene.self_contact || has_mesh ? edges_of_a_search * mean_edge_ : infinity;
+  longest_path_ = scene.self_contact || has_mesh(bodies_) ? edges_of_a_search * mean_edge_ : infinity;
 }
 
 void ContinuousContact::restore(const std::vector<Pose>& poses, const ObstacleTransitions& transitions,

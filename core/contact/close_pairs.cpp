@@ -186,19 +186,15 @@ double ClosePairs::motion_of(const FeaturePair& pair, const Sides& sides) const 
 }
 
 /// A pair cannot come within its reach where the displacements are too short, or lead along or away.
-ClosePairs::Role ClosePairs::role_of(const FeaturePair& pair, const Separation& s, double motion,
-                                     const SweptBounds& swept) const {
-  const double reach = reach_of(pair, swept);
+ClosePairs::Role ClosePairs::role_of(const FeaturePair& pair, const Separation& s, const PairMotion& motion,
+                                     double most) {
+  const double reach = motion.reach(pair);
   const bool is_within = s.distance <= reach && s.gap() <= reach, holds = is_contact(s, reach);
   if (is_within && holds) return Role::acts;
-  if (s.distance > reach + motion) return Role::none;
-  const Role role = !holds && s.gap() > 2 * motion ? Role::waits : Role::acts;
+  if (s.distance > reach + most) return Role::none;
+  const Role role = !holds && s.gap() > 2 * most ? Role::waits : Role::acts;
   if (is_within || s.normal.isZero(0)) return role;
-  Interval near, far{s.far_level, s.far_level};
-  for (int j = 0; j < s.count; ++j)
-    (j < s.near_count ? near : far).add(along(s.normal, swept.particles[at(s.particle[at(j)])]));
-  if (pair.obstacle != FeaturePair::cloth_itself) far.high += obstacle_paths_[at(pair.obstacle)];
-  return near.low > far.high + reach ? Role::none : role;
+  return motion.leaves_apart(pair, s, s.normal, s.far_level) ? Role::none : role;
 }
 
 /// Of the part's pairs, those that act remain.
@@ -208,16 +204,16 @@ void ClosePairs::separate_part(const PairQuery& now, Part& part) const {
   part.needs.resize(pairs.size());
   part.separations.clear(), part.waiting.clear();
   const PairSetting setting{cloth_, now.position, bodies_, now.poses, now.placed};
+  const PairMotion motion{
+      part.motion, {now.swept.reach, now.swept.own_reach}, now.swept.particles, obstacle_paths_};
   PairBatch(setting).separate(pairs, {near_factor * now.swept.reach, near_factor * now.swept.own_reach},
-                              {part.motion, {now.swept.reach, now.swept.own_reach}}, part.every.data(),
-                              part.needs.data());
+                              motion, part.every.data(), part.needs.data());
   std::size_t kept = 0;
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     if (part.needs[k] == PairNeed::apart) continue;
     const FeaturePair pair = pairs[k];
-    const Role role = part.needs[k] == PairNeed::waits
-                          ? Role::waits
-                          : role_of(pair, part.every[k], part.motion[k], now.swept);
+    const Role role =
+        part.needs[k] == PairNeed::waits ? Role::waits : role_of(pair, part.every[k], motion, part.motion[k]);
     if (role == Role::waits) part.waiting.push_back({pair, kept});
     if (role != Role::acts) continue;
     pairs[kept++] = pair;

@@ -89,8 +89,8 @@ class ClosePairs {
   void spread(const std::vector<double>& of_particles, std::vector<double>& of_features) const;
   bool is_beyond(std::size_t kept) const;
   double motion_of(const FeaturePair& pair, const Sides& sides) const;
-  Role role_of(const FeaturePair& pair, const Separation& separation, double motion,
-               const SweptBounds& swept) const;
+  static Role role_of(const FeaturePair& pair, const Separation& separation, const PairMotion& motion,
+                      double most);
   void separate_part(const PairQuery& now, Part& part) const;
   template <class Beyond>
   void separate_all(const PairQuery& now, const std::vector<FeaturePair>& candidates,

@@ -3,9 +3,8 @@
 #include <algorithm>
 #include <bit>
 #include <cassert>
-#include <cmath>
-#include <numbers>
 
+#include "contact/seen_boxes.h"
 #include "geometry/at.h"
 #include "kernels/in_shares.h"
 #include "kernels/instruction_set.h"
@@ -16,49 +15,6 @@ namespace {
 /// Overlaps, and features to be looked for in a hierarchy, that are worth a thread of their own.
 constexpr std::size_t least_share = 100, least_queries = 64;
 
-/// m, largest distance of an arc from its chord, for a point that rotates at `radius` metres from the axis.
-double bulge(const PoseInterpolation& path, double radius) {
-  if (path.angle() >= 2 * std::numbers::pi) return 2 * radius;
-  return radius * (1 - std::cos(0.5 * path.angle()));
-}
-
-/// The same for a point at rest, `radius` metres from the pivot at the start, in the obstacle's coordinates:
-/// the displacement of the pivot rotates too, and deviates from the chord by t (1 - t) times the angle.
-double seen_bulge(const PoseInterpolation& path, double radius) {
-  return bulge(path, radius) + 0.25 * path.angle() * (path.pivot(1) - path.pivot(0)).norm();
-}
-
-/// A box around the path of a point of an obstacle, grown by `reach`. A point that rotates and whose distance
-/// from the pivot changes deviates from the chord by at most an eighth of the second derivative.
-Bounds swept_box(const PoseInterpolation& path, const Vec3& pivot, const Vec3& point, double reach) {
-  const double radius = (point - pivot).norm();
-  return bounds_of(path.from().at(point), path.to().at(point))
-      .grown(reach + bulge(path, path.largest_stretch() * radius) +
-             0.25 * path.angle() * path.growth() * radius);
-}
-
-/// A bounding box in the coordinates of an obstacle.
-Bounds seen_from(const Pose& pose, const Bounds& box) {
-  const Vec3 middle = pose.inverse(0.5 * (box.lower + box.upper));
-  const Vec3 half = pose.rotation.cwiseAbs().transpose() * (0.5 * (box.upper - box.lower));
-  return {middle - half.cwiseQuotient(pose.stretch), middle + half.cwiseQuotient(pose.stretch)};
-}
-
-/// Boxes of the cloth in the coordinates of a mesh, for its whole path, grown by `reach`.
-void seen_from_body(const ObstacleBody& body, const PoseInterpolation& path, const std::vector<Bounds>& boxes,
-                    double reach, std::vector<Bounds>& seen) {
-  const Vec3 pivot = path.from().at(body.pivot);
-  const bool at_home = path.is_still() && path.from() == Pose{};
-  seen.resize(boxes.size());
-  for (std::size_t f = 0; f < boxes.size(); ++f) {
-    const Bounds& box = boxes[f];
-    seen[f] = at_home ? box : seen_from(path.from(), box);
-    if (!path.is_still()) seen[f].add(seen_from(path.to(), box));
-    const double radius = (0.5 * (box.lower + box.upper) - pivot).norm() + (box.upper - box.lower).norm();
-    seen[f] = seen[f].grown((reach + seen_bulge(path, radius)) / path.least_stretch());
-  }
-}
-
 bool has_vertex(const Triangle& triangle, int vertex) {
   return triangle[0] == vertex || triangle[1] == vertex || triangle[2] == vertex;
 }
@@ -67,35 +23,14 @@ bool share_vertex(const std::array<int, 2>& edge, const std::array<int, 2>& othe
   return edge[0] == other[0] || edge[0] == other[1] || edge[1] == other[0] || edge[1] == other[1];
 }
 
-/// From the boxes of the vertices to those of edges and faces.
-void spread(const Surface& surface, OfFeatures<std::vector<Bounds>>& boxes) {
-  const std::vector<Bounds>& vertices = boxes[Feature::vertex];
-  boxes[Feature::edge].clear(), boxes[Feature::face].clear();
-  for (const auto& [a, b] : surface.edges)
-    boxes[Feature::edge].push_back(joined(vertices[at(a)], vertices[at(b)]));
-  for (const auto& [a, b, c] : surface.triangles)
-    boxes[Feature::face].push_back(joined(joined(vertices[at(a)], vertices[at(b)]), vertices[at(c)]));
-}
-
-/// The region of a feature, from those of the vertices.
-RoundedRegion region_of(const Surface& surface, Feature feature, int index,
-                        std::span<const RoundedRegion> vertices) {
-  const auto joined = [&](const auto& all) {
-    RoundedRegion region = vertices[at(all[0])];
-    for (std::size_t k = 1; k < all.size(); ++k) region.add(vertices[at(all[k])]);
-    return region;
-  };
-  if (feature == Feature::vertex) return vertices[at(index)];
-  return feature == Feature::edge ? joined(surface.edges[at(index)]) : joined(surface.triangles[at(index)]);
-}
-
-/// In the given order of these features.
-void fill(std::vector<EightRegions>& regions, const Surface& surface, Feature feature,
-          std::span<const int> order, std::span<const RoundedRegion> vertices) {
-  constexpr std::size_t eight = EightBoxes::count;
-  regions.resize((order.size() + eight - 1) / eight);
-  for (std::size_t place = 0; place < order.size(); ++place)
-    regions[place / eight].set(place % eight, region_of(surface, feature, order[place], vertices));
+/// Of eight places of an order, `hits` without those of features for which is_out(feature).
+template <class IsOut>
+std::uint32_t without(std::uint32_t hits, int eight, std::span<const int> order, const IsOut& is_out) {
+  const auto first = at(eight) * EightBoxes::count;
+  for (std::uint32_t left = hits; left != 0; left &= left - 1)
+    if (is_out(order[first + static_cast<std::size_t>(std::countr_zero(left))]))
+      hits &= ~(left & (~left + 1));
+  return hits;
 }
 
 bool holds(const Bounds& outer, const Bounds& inner) {
@@ -160,13 +95,6 @@ class PairSearch::Step {
       if (meeting.obstacle == obstacle_) search_.take_near(meeting, far[meeting.far()], pairs_);
   }
 
-  /// A particle in the coordinates of an obstacle at rest, grown by the reach.
-  Capsule seen_capsule(const Capsule& capsule, const PoseInterpolation& path) const {
-    const Pose& pose = path.from();
-    return {pose.inverse(capsule.from), pose.inverse(capsule.to),
-            (capsule.radius + reach_) / path.least_stretch()};
-  }
-
   /// Boxes of the particles in the coordinates of an obstacle, for its whole path, grown by the reach.
   const std::vector<Bounds>& seen_boxes(const ObstacleBody& body, const PoseInterpolation& path) {
     std::vector<Bounds>& boxes = search_.boxes_[Feature::vertex];
@@ -175,7 +103,8 @@ class PairSearch::Step {
       return boxes;
     }
     boxes.clear();
-    for (const Capsule& capsule : swept_.particles) boxes.push_back(box_of(seen_capsule(capsule, path)));
+    for (const Capsule& capsule : swept_.particles)
+      boxes.push_back(box_of(seen_at_rest(path, capsule, reach_)));
     return boxes;
   }
   void find_outcodes(const std::vector<Bounds>& particles, const Bounds& box) {
@@ -248,7 +177,8 @@ class PairSearch::Step {
     std::vector<RoundedRegion>& near = search_.near_;
     near.clear();
     if (path.is_still())
-      for (const Capsule& capsule : swept_.particles) near.push_back(rounded(seen_capsule(capsule, path)));
+      for (const Capsule& capsule : swept_.particles)
+        near.push_back(rounded(seen_at_rest(path, capsule, reach_)));
     else
       for (const Bounds& box : seen_boxes(body, path)) near.push_back(rounded(box));
     take_near(search_.mesh_regions_[at(obstacle_)]);
@@ -377,38 +307,28 @@ void PairSearch::find_own_overlaps(double reach) {
   spread(cloth_, boxes_);
   for (const Feature feature : {Feature::edge, Feature::face}) own_trees_[feature].refit(boxes_[feature]);
   Meeting &edge_meeting = meetings_[0], &face_meeting = meetings_[1];  // as the constructor made them
-  /// Of eight places of the tree, `hits` without those of features that share(feature).
-  const auto add = [](const BoxTree& tree, int query, int eight, std::uint32_t hits, const auto& share,
-                      std::vector<RegionOverlap>& part) {
-    for (std::uint32_t left = hits; left != 0; left &= left - 1) {
-      const int place = eight * static_cast<int>(EightBoxes::count) + std::countr_zero(left);
-      if (share(tree.order()[at(place)])) hits &= ~(left & -left);
-    }
-    if (hits != 0) part.push_back({query, static_cast<std::uint32_t>(eight), hits});
-  };
   const BoxTree &edges = own_trees_[Feature::edge], &faces = own_trees_[Feature::face];
-  collect(vertices.size(), face_meeting,
-          [&](std::size_t begin, std::size_t end, std::vector<RegionOverlap>& part) {
-            for (std::size_t v = begin; v < end; ++v)
-              faces.visit_eights(
-                  0, vertices[v], [&, vertex = static_cast<int>(v)](int eight, std::uint32_t hits) {
-                    add(
-                        faces, vertex, eight, hits,
-                        [&](int face) { return has_vertex(cloth_.triangles[at(face)], vertex); }, part);
-                  });
+  const auto collect_of = [&](Meeting& meeting, const BoxTree& tree, std::size_t queries,
+                              const auto& visit_one) {
+    collect(queries, meeting, [&](std::size_t begin, std::size_t end, std::vector<RegionOverlap>& part) {
+      for (std::size_t place = begin; place < end; ++place)
+        visit_one(place, [&](int query, int first, const Bounds& box, const auto& shares) {
+          tree.visit_eights(first, box, [&](int eight, std::uint32_t all) {
+            const std::uint32_t hits = without(all, eight, tree.order(), shares);
+            if (hits != 0) part.push_back({query, static_cast<std::uint32_t>(eight), hits});
           });
-  collect(cloth_.edges.size(), edge_meeting,
-          [&](std::size_t begin, std::size_t end, std::vector<RegionOverlap>& part) {
-            for (std::size_t place = begin; place < end; ++place) {
-              const int query = edges.order()[place];
-              const auto shares = [&](int edge) {
-                return share_vertex(cloth_.edges[at(query)], cloth_.edges[at(edge)]);
-              };
-              edges.visit_eights(
-                  static_cast<int>(place) + 1, boxes_[Feature::edge][at(query)],
-                  [&](int eight, std::uint32_t hits) { add(edges, query, eight, hits, shares, part); });
-            }
-          });
+        });
+    });
+  };
+  collect_of(face_meeting, faces, vertices.size(), [&](std::size_t v, const auto& visit) {
+    const int vertex = static_cast<int>(v);
+    visit(vertex, 0, vertices[v], [&](int face) { return has_vertex(cloth_.triangles[at(face)], vertex); });
+  });
+  collect_of(edge_meeting, edges, cloth_.edges.size(), [&](std::size_t place, const auto& visit) {
+    const int query = edges.order()[place];
+    visit(query, static_cast<int>(place) + 1, boxes_[Feature::edge][at(query)],
+          [&](int edge) { return share_vertex(cloth_.edges[at(query)], cloth_.edges[at(edge)]); });
+  });
 }
 
 /// collect_part(begin, end, part) for shares of the queries; the parts follow each other in their order.

@@ -3,11 +3,11 @@
 // so that no pair is missed at any speed.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <vector>
 
 #include "contact/feature_pairs.h"
+#include "contact/feature_regions.h"
 #include "contact/region_kernels.h"
 #include "contact/regions.h"
 #include "geometry/box_tree.h"
@@ -21,20 +21,6 @@ struct SweptBounds {
   std::vector<Capsule> particles{};
   double reach = 0;      ///< m, between cloth and obstacles
   double own_reach = 0;  ///< m, of the cloth from itself
-};
-
-/// What a cloth and a mesh are made of.
-enum class Feature : std::uint8_t { vertex, edge, face };
-
-/// One for each Feature.
-template <class T>
-class OfFeatures {
- public:
-  T& operator[](Feature feature) { return all_[static_cast<std::size_t>(feature)]; }
-  const T& operator[](Feature feature) const { return all_[static_cast<std::size_t>(feature)]; }
-
- private:
-  std::array<T, 3> all_;
 };
 
 /// Builds hierarchies of bounding boxes at construction, where a scene needs them: of the edges and faces of
@@ -99,7 +85,7 @@ class PairSearch {
   OfFeatures<std::vector<Bounds>> boxes_;  ///< scratch
   std::vector<RoundedRegion> near_;        ///< of the particles, grown by the reach
   OfFeatures<Regions> own_regions_;
-  struct Part {  ///< of one thread
+  struct Part {  ///< of one share
     std::vector<FeaturePair> pairs;
     std::vector<RegionOverlap> overlaps;
     std::vector<int> places;

@@ -54,14 +54,20 @@ bool ClosePairs::all_at_rest(const PairQuery& now) const {
   return true;
 }
 
-/// Whether the candidates still contain all pairs.
+/// Whether the candidates still contain all pairs: those whose distance is at most what may be taken from it
+/// (motion_of()) beyond their reach. What a feature may have moved by, and may yet, is bounded by the largest
+/// of its particles' displacements and ranges, which may be those of two particles of an edge.
 bool ClosePairs::holds(const PairQuery& now) const {
   if (cached_range_.size() != range_.size()) return false;
   for (std::size_t k = 0; k < bodies_.size(); ++k)
     if (!same_place(bodies_[k], now.poses[k], cached_poses_[k])) return false;
   for (std::size_t i = 0; i < range_.size(); ++i)
     if (moved_[i] + range_[i] > cached_range_[i]) return false;
-  return true;
+  return std::all_of(cloth_.edges.begin(), cloth_.edges.end(), [&](const std::array<int, 2>& edge) {
+    const std::size_t a = at(edge[0]), b = at(edge[1]);
+    return std::max(moved_[a] + range_[b], moved_[b] + range_[a]) <=
+           std::max(cached_range_[a], cached_range_[b]);
+  });
 }
 
 /// Finds the candidates and their distances.
@@ -75,6 +81,10 @@ void ClosePairs::collect_candidates(const PairQuery& now) {
     cached_range_[i] = range_[i] + std::min(ways_ahead * length, most_ahead * reach) + least_ahead * reach;
     around.particles[i] = {here, here, cached_range_[i]};
   }
+  for (const auto& [a, b] :
+       cloth_.edges)  // all of a feature's points may move by its widest particle's range
+    for (const auto& [i, beside] : {std::pair(at(a), at(b)), std::pair(at(b), at(a))})
+      around.particles[i].radius = std::max(around.particles[i].radius, cached_range_[beside]);
   search_.find(around, now.paths, cached_);
   cached_room_.resize(cached_.size()), cached_sides_.resize(cached_.size());
   const PairSetting setting{cloth_, now.position, bodies_, now.poses, now.placed};
@@ -143,17 +153,16 @@ ClosePairs::Sides ClosePairs::sides_of(const FeaturePair& pair) const {
   return {none, none};
 }
 
-/// Returns whether some candidate may be within its reach.
+/// How far each feature may be at the end of this round from where it was when the candidates were found, and
+/// may go in it. Returns whether some candidate may be within its reach; without one these are not found.
 bool ClosePairs::add_spent() {
-  spent_of_particles_.resize(range_.size());
-  double most_spent = 0;  // of two particles
-  for (std::size_t i = 0; i < range_.size(); ++i) {
-    spent_of_particles_[i] = moved_[i] + range_[i];
-    most_spent = std::max(most_spent, 2 * spent_of_particles_[i]);
-  }
-  if (std::none_of(cached_room_.begin(), cached_room_.end(), [&](double room) { return room <= most_spent; }))
+  const auto largest = [](const std::vector<double>& of) { return *std::max_element(of.begin(), of.end()); };
+  const double most = 2 * (largest(moved_) + largest(range_));
+  if (std::none_of(cached_room_.begin(), cached_room_.end(), [&](double room) { return room <= most; }))
     return false;
-  spread(spent_of_particles_, spent_);
+  spread(range_, range_of_feature_);
+  spread(moved_, spent_);
+  for (std::size_t f = 0; f < spent_.size(); ++f) spent_[f] += range_of_feature_[f];
   return true;
 }
 
@@ -186,15 +195,19 @@ double ClosePairs::motion_of(const FeaturePair& pair, const Sides& sides) const 
 }
 
 /// A pair cannot come within its reach where the displacements are too short, or lead along or away.
-ClosePairs::Role ClosePairs::role_of(const FeaturePair& pair, const Separation& s, const PairMotion& motion,
-                                     double most) {
-  const double reach = motion.reach(pair);
+ClosePairs::Role ClosePairs::role_of(const FeaturePair& pair, const Separation& s, double motion,
+                                     const SweptBounds& swept) const {
+  const double reach = reach_of(pair, swept);
   const bool is_within = s.distance <= reach && s.gap() <= reach, holds = is_contact(s, reach);
   if (is_within && holds) return Role::acts;
-  if (s.distance > reach + most) return Role::none;
-  const Role role = !holds && s.gap() > 2 * most ? Role::waits : Role::acts;
+  if (s.distance > reach + motion) return Role::none;
+  const Role role = !holds && s.gap() > 2 * motion ? Role::waits : Role::acts;
   if (is_within || s.normal.isZero(0)) return role;
-  return motion.leaves_apart(pair, s, s.normal, s.far_level) ? Role::none : role;
+  Interval near, far{s.far_level, s.far_level};
+  for (int j = 0; j < s.count; ++j)
+    (j < s.near_count ? near : far).add(along(s.normal, swept.particles[at(s.particle[at(j)])]));
+  if (pair.obstacle != FeaturePair::cloth_itself) far.high += obstacle_paths_[at(pair.obstacle)];
+  return near.low > far.high + reach ? Role::none : role;
 }
 
 /// Of the part's pairs, those that act remain.
@@ -204,16 +217,16 @@ void ClosePairs::separate_part(const PairQuery& now, Part& part) const {
   part.needs.resize(pairs.size());
   part.separations.clear(), part.waiting.clear();
   const PairSetting setting{cloth_, now.position, bodies_, now.poses, now.placed};
-  const PairMotion motion{
-      part.motion, {now.swept.reach, now.swept.own_reach}, now.swept.particles, obstacle_paths_};
   PairBatch(setting).separate(pairs, {near_factor * now.swept.reach, near_factor * now.swept.own_reach},
-                              motion, part.every.data(), part.needs.data());
+                              {part.motion, {now.swept.reach, now.swept.own_reach}}, part.every.data(),
+                              part.needs.data());
   std::size_t kept = 0;
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     if (part.needs[k] == PairNeed::apart) continue;
     const FeaturePair pair = pairs[k];
-    const Role role =
-        part.needs[k] == PairNeed::waits ? Role::waits : role_of(pair, part.every[k], motion, part.motion[k]);
+    const Role role = part.needs[k] == PairNeed::waits
+                          ? Role::waits
+                          : role_of(pair, part.every[k], part.motion[k], now.swept);
     if (role == Role::waits) part.waiting.push_back({pair, kept});
     if (role != Role::acts) continue;
     pairs[kept++] = pair;
@@ -270,7 +283,6 @@ void ClosePairs::find(const PairQuery& now, std::vector<FeaturePair>& pairs,
         moved_[i] = (now.position[i] - cached_position_[i]).norm();
     if (!holds(now)) collect_candidates(now);
     if (add_spent()) {
-      spread(range_, range_of_feature_);
       separate_all(now, cached_, cached_sides_, [&](std::size_t k) { return is_beyond(k); });
     } else {
       parts_[0].pairs.clear(), parts_[0].separations.clear(), parts_[0].waiting.clear();

@@ -89,8 +89,8 @@ class ClosePairs {
   void spread(const std::vector<double>& of_particles, std::vector<double>& of_features) const;
   bool is_beyond(std::size_t kept) const;
   double motion_of(const FeaturePair& pair, const Sides& sides) const;
-  static Role role_of(const FeaturePair& pair, const Separation& separation, const PairMotion& motion,
-                      double most);
+  Role role_of(const FeaturePair& pair, const Separation& separation, double motion,
+               const SweptBounds& swept) const;
   void separate_part(const PairQuery& now, Part& part) const;
   template <class Beyond>
   void separate_all(const PairQuery& now, const std::vector<FeaturePair>& candidates,
@@ -121,7 +121,6 @@ class ClosePairs {
   std::vector<double> cached_room_;  ///< m, of each, its distance at cached_position_ beyond its reach
   std::vector<double>
       spent_;  ///< m, of features_, how far each may be at the end of this round from where it was then
-  std::vector<double> spent_of_particles_;  ///< m, the same of particles
   Vec3Field cached_position_;
   std::vector<double>
       cached_range_;  ///< m, displacement of each particle up to which the candidates are complete

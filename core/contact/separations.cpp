@@ -102,37 +102,16 @@ void PairBatch::find_distances(std::span<const FeaturePair> pairs, double* dista
       [&](std::size_t k) { distances[k] = cloth::separate(pairs[k], setting_, 0).distance; });
 }
 
-bool PairMotion::leaves_apart(const FeaturePair& pair, const PairParticles& on, const Vec3& normal,
-                              double far_level) const {
-  Interval near, far{far_level, far_level};
-  for (int j = 0; j < on.count; ++j)
-    (j < on.near_count ? near : far).add(along(normal, particles[at(on.particle[at(j)])]));
-  if (pair.obstacle != FeaturePair::cloth_itself) far.high += obstacle_paths[at(pair.obstacle)];
-  return near.low > far.high + reach(pair);
-}
-
-template <class Points, class Closest>
-PairNeed PairBatch::need_of(const FeaturePair& pair, const Points& points_of, const Closest& closest,
-                            const PairMotion& motion, double most) const {
-  constexpr bool are_segments = std::is_same_v<Closest, SegmentSegment>;
-  const double distance = distance_of(pair, closest.squared_distance, setting_), reach = motion.reach(pair);
+template <class Closest>
+PairNeed PairBatch::need_of(const FeaturePair& pair, const Closest& closest, double reach,
+                            double most) const {
+  const double distance = distance_of(pair, closest.squared_distance, setting_);
   if (distance > reach + most) return PairNeed::apart;
   if (!(distance > 2 * (1 + of_closest_points) * most)) return PairNeed::separation;
-  if constexpr (are_segments) {
-    if (is_in_charge(closest)) return PairNeed::separation;
-  } else {
-    if (is_in_charge(pair, closest, setting_)) return PairNeed::separation;
-  }
-  if (distance < reach) return PairNeed::waits;
-  if (pair.kind == PairKind::face_sphere) return PairNeed::separation;
-  const FeaturePoints points = points_of();
-  const bool is_near_face = pair.kind == PairKind::face_vertex;
-  const Vec3 normal = (is_near_face ? -1 : 1) / distance * closest.separation;
-  double far_level = -Bounds::infinity;
-  const std::size_t begin = is_near_face ? 0 : are_segments ? 2 : 1, end = is_near_face ? 1 : 4;
-  for (std::size_t k = begin; k < end; ++k) far_level = std::max(far_level, normal.dot(points[k]));
-  return motion.leaves_apart(pair, particles_of(pair, setting_.cloth), normal, far_level) ? PairNeed::apart
-                                                                                          : PairNeed::waits;
+  if constexpr (std::is_same_v<Closest, SegmentSegment>)
+    return is_in_charge(closest) ? PairNeed::separation : PairNeed::waits;
+  else
+    return is_in_charge(pair, closest, setting_) ? PairNeed::separation : PairNeed::waits;
 }
 
 void PairBatch::separate(std::span<const FeaturePair> pairs, const NearDistances& within,
@@ -140,7 +119,7 @@ void PairBatch::separate(std::span<const FeaturePair> pairs, const NearDistances
   go_through(
       pairs,
       [&](std::size_t k, const auto& points, const auto& closest) {
-        needs[k] = need_of(pairs[k], points, closest, motion, motion.most[k]);
+        needs[k] = need_of(pairs[k], closest, motion.reach(pairs[k]), motion.most[k]);
         if (needs[k] == PairNeed::separation)
           separations[k] = separation_of(pairs[k], points(), closest, setting_, within(pairs[k]));
       },

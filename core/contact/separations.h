@@ -6,7 +6,6 @@
 
 #include "contact/closest_kernels.h"
 #include "contact/feature_pairs.h"
-#include "contact/regions.h"
 
 namespace cloth {
 
@@ -19,17 +18,11 @@ struct NearDistances {
   }
 };
 
-/// How a round's motion changes the distance of pairs, in m.
+/// What a round's motion can take from the distance of each pair, and up to which distance a pair matters, in
+/// m.
 struct PairMotion {
-  std::span<const double> most;  ///< of each pair: what it can take from the distance
-  NearDistances reach;           ///< up to which a pair matters
-  std::span<const Capsule> particles;
-  std::span<const double> obstacle_paths;  ///< of each obstacle: bound of its points' displacements
-
-  /// Whether the motion leaves the two sides further apart than their reach, along the unit vector `normal`
-  /// from the far to the near one. No point of the far side is beyond `far_level` along it now.
-  bool leaves_apart(const FeaturePair& pair, const PairParticles& on, const Vec3& normal,
-                    double far_level) const;
+  std::span<const double> most;
+  NearDistances reach;
 };
 
 /// Pairs that cannot come within their reach are `apart`; of the others those `wait` that cannot be `nearest`
@@ -58,9 +51,8 @@ class PairBatch {
     int count = 0;
   };
 
-  template <class Points, class Closest>
-  PairNeed need_of(const FeaturePair& pair, const Points& points, const Closest& closest,
-                   const PairMotion& motion, double most) const;
+  template <class Closest>
+  PairNeed need_of(const FeaturePair& pair, const Closest& closest, double reach, double most) const;
   template <class Take, class Alone>
   void go_through(std::span<const FeaturePair> pairs, const Take& take, const Alone& alone);
   static bool add(std::size_t item, const FeaturePoints& points, Waiting& waiting);

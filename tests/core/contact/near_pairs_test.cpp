@@ -290,6 +290,7 @@ void find_on_walks(double wide, const Look& look) {
   for (int trial = 0; trial < 12; ++trial) {
     SCOPED_TRACE(trial);
     std::unique_ptr<ClosePairs> keeping;
+    double reach = 0;
     walk(random, [&](const Intersection& meeting, Motion motion, bool begins) {
       motion.reach *= wide, motion.own_reach *= wide, motion.margin /= wide;
       const Sheet& sheet = meeting.sheet;
@@ -297,6 +298,8 @@ void find_on_walks(double wide, const Look& look) {
         return std::make_unique<ClosePairs>(sheet.surface, sheet.position, meeting.bodies, true, 0.02);
       };
       if (begins) keeping = search();
+      if (motion.reach != reach) keeping->forget();
+      reach = motion.reach;
       const SweptBounds swept = motion.swept();
       const std::vector<Pose> poses = poses_at_begin(meeting);
       const PairQuery now{motion.from, swept, meeting.paths, poses};

@@ -282,17 +282,24 @@ struct Found {
   }
 };
 
+struct Walks {
+  int trials = 12;
+  double wide = 1;     ///< factor of the reaches, and divisor of the margins
+  double resting = 0;  ///< part of the particles that rest in a round while their neighbours move
+};
+
 /// Calls `look` in random walks with what is found by one search after the other, and by a search of its own.
-/// `wide`: factor of the reaches, and divisor of the margins.
 template <class Look>
-void find_on_walks(double wide, const Look& look) {
+void find_on_walks(const Walks& walks, const Look& look) {
   Random random;
-  for (int trial = 0; trial < 12; ++trial) {
+  for (int trial = 0; trial < walks.trials; ++trial) {
     SCOPED_TRACE(trial);
     std::unique_ptr<ClosePairs> keeping;
     double reach = 0;
     walk(random, [&](const Intersection& meeting, Motion motion, bool begins) {
-      motion.reach *= wide, motion.own_reach *= wide, motion.margin /= wide;
+      motion.reach *= walks.wide, motion.own_reach *= walks.wide, motion.margin /= walks.wide;
+      for (std::size_t i = 0; walks.resting > 0 && i < motion.to.size(); ++i)
+        if (random.uniform(0, 1) < walks.resting) motion.to.set(i, motion.from[i]);
       const Sheet& sheet = meeting.sheet;
       const auto search = [&] {
         return std::make_unique<ClosePairs>(sheet.surface, sheet.position, meeting.bodies, true, 0.02);
@@ -311,8 +318,8 @@ void find_on_walks(double wide, const Look& look) {
 TEST(ClosePairs, MissNoneAndDoNotDependOnWhatWasKept) {
   Looked looked;
   std::size_t compared = 0, differing = 0;
-  find_on_walks(1, [&](const Intersection& meeting, const Motion& motion, const PairQuery& now,
-                       const Found& found, const Found& fresh) {
+  find_on_walks({}, [&](const Intersection& meeting, const Motion& motion, const PairQuery& now,
+                        const Found& found, const Found& fresh) {
     ASSERT_EQ(found.pairs, fresh.pairs);
     ASSERT_EQ(found.waiting, fresh.waiting);
     ASSERT_EQ(found.separations.size(), found.pairs.size());
@@ -331,10 +338,23 @@ TEST(ClosePairs, MissNoneAndDoNotDependOnWhatWasKept) {
   EXPECT_GT(looked.near, 2000u);
 }
 
+TEST(ClosePairs, DoNotDependOnWhatWasKeptWhereNeighboursMoveUnevenly) {
+  std::size_t waiting = 0, acting = 0;
+  find_on_walks(
+      {.trials = 100, .wide = 10, .resting = 0.2},
+      [&](const Intersection&, const Motion&, const PairQuery&, const Found& found, const Found& fresh) {
+        ASSERT_EQ(found.pairs, fresh.pairs);
+        ASSERT_EQ(found.waiting, fresh.waiting);
+        waiting += found.waiting.size(), acting += found.pairs.size();
+      });
+  EXPECT_GT(waiting, 10000u);
+  EXPECT_GT(acting, 10000u);
+}
+
 TEST(ClosePairs, ThatWaitAreNoContactsAndKeepHalfTheirDistance) {
   std::size_t looked = 0;
-  find_on_walks(10, [&](const Intersection& meeting, const Motion& motion, const PairQuery& now,
-                        const Found& found, const Found& fresh) {
+  find_on_walks({.wide = 10}, [&](const Intersection& meeting, const Motion& motion, const PairQuery& now,
+                                  const Found& found, const Found& fresh) {
     ASSERT_EQ(found.pairs, fresh.pairs);
     ASSERT_EQ(found.waiting, fresh.waiting);
     std::size_t last = 0;

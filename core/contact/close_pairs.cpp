@@ -1,7 +1,9 @@
 #include "contact/close_pairs.h"
 
 #include <algorithm>
+#include <array>
 #include <numeric>
+#include <utility>
 
 #include "contact/obstacle_body.h"
 #include "geometry/at.h"
@@ -58,15 +60,15 @@ bool ClosePairs::all_at_rest(const PairQuery& now) const {
 /// (motion_of()) beyond their reach. What a feature may have moved by, and may yet, is bounded by the largest
 /// of its particles' displacements and ranges, which may be those of two particles of an edge.
 bool ClosePairs::holds(const PairQuery& now) const {
-  if (cached_range_.size() != range_.size()) return false;
+  if (cached_range_.size() != range_.size() || cached_poses_.size() != bodies_.size()) return false;
   for (std::size_t k = 0; k < bodies_.size(); ++k)
     if (!same_place(bodies_[k], now.poses[k], cached_poses_[k])) return false;
   for (std::size_t i = 0; i < range_.size(); ++i)
-    if (moved_[i] + range_[i] > cached_range_[i]) return false;
+    if (moved_[i] + range_[i] > (1 - of_rounding) * cached_range_[i]) return false;
   return std::all_of(cloth_.edges.begin(), cloth_.edges.end(), [&](const std::array<int, 2>& edge) {
     const std::size_t a = at(edge[0]), b = at(edge[1]);
     return std::max(moved_[a] + range_[b], moved_[b] + range_[a]) <=
-           std::max(cached_range_[a], cached_range_[b]);
+           (1 - of_rounding) * std::max(cached_range_[a], cached_range_[b]);
   });
 }
 
@@ -156,7 +158,9 @@ ClosePairs::Sides ClosePairs::sides_of(const FeaturePair& pair) const {
 /// How far each feature may be at the end of this round from where it was when the candidates were found, and
 /// may go in it. Returns whether some candidate may be within its reach; without one these are not found.
 bool ClosePairs::add_spent() {
-  const auto largest = [](const std::vector<double>& of) { return *std::max_element(of.begin(), of.end()); };
+  const auto largest = [](const std::vector<double>& of) {
+    return of.empty() ? 0 : *std::max_element(of.begin(), of.end());
+  };
   const double most = 2 * (largest(moved_) + largest(range_));
   if (std::none_of(cached_room_.begin(), cached_room_.end(), [&](double room) { return room <= most; }))
     return false;
@@ -194,7 +198,8 @@ double ClosePairs::motion_of(const FeaturePair& pair, const Sides& sides) const 
   return range_of_feature_[at(sides.near)] + range_of_feature_[at(sides.far)] + far;
 }
 
-/// A pair cannot come within its reach where the displacements are too short, or lead along or away.
+/// A pair cannot come within its reach where the displacements are too short, or lead along or away. (Pairs
+/// that wait without a separation are not asked for the direction.)
 ClosePairs::Role ClosePairs::role_of(const FeaturePair& pair, const Separation& s, double motion,
                                      const SweptBounds& swept) const {
   const double reach = reach_of(pair, swept);
@@ -244,7 +249,7 @@ void ClosePairs::separate_all(const PairQuery& now, const std::vector<FeaturePai
       shares_.run(team_, candidates.size(), least_pairs, [&](int share, std::size_t begin, std::size_t end) {
         Part& part = parts_[at(share)];
         part.chosen.resize(std::max(part.chosen.size(), end - begin));
-        std::size_t chosen = 0;  // without branches: nobody can predict them
+        std::size_t chosen = 0;  // without branches: a processor cannot predict them
         for (std::size_t k = begin; k < end; ++k) {
           part.chosen[chosen] = k;
           chosen += beyond(k) ? 0 : 1;

@@ -49,7 +49,8 @@ class ClosePairs {
 
   /// All pairs that can come within their reach (SweptBounds) while particles and obstacles stay in their
   /// swept bounds. `waiting`: those that are no contacts now (is_contact()) and whose gap is more than twice
-  /// what the motion can take from it, so that they do not bound it either; they may become contacts.
+  /// what the motion can take from it, so that they do not bound it either; they may become contacts. Some of
+  /// these cannot come within their reach, since the motion leads apart.
   /// The others in `pairs`, with the separation of each. All three are replaced.
   void find(const PairQuery& now, std::vector<FeaturePair>& pairs, std::vector<Separation>& separations,
             std::vector<WaitingPair>& waiting);

@@ -1,8 +1,11 @@
 #include "contact/near_pairs.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
-#include <cassert>
+#include <cstdint>
+#include <span>
+#include <stdexcept>
 
 #include "contact/seen_boxes.h"
 #include "geometry/at.h"
@@ -12,7 +15,8 @@
 namespace cloth {
 namespace {
 
-/// Overlaps, and features to be looked for in a hierarchy, that are worth a thread of their own.
+/// Overlaps, of up to eight features each, and features to be looked for in a hierarchy, that are worth a
+/// thread of their own.
 constexpr std::size_t least_share = 100, least_queries = 64;
 
 bool has_vertex(const Triangle& triangle, int vertex) {
@@ -31,6 +35,12 @@ std::uint32_t without(std::uint32_t hits, int eight, std::span<const int> order,
     if (is_out(order[first + static_cast<std::size_t>(std::countr_zero(left))]))
       hits &= ~(left & (~left + 1));
   return hits;
+}
+
+/// Throws std::length_error where RegionOverlap cannot count so many features.
+void expect_to_be_counted(std::size_t features) {
+  if (features / EightBoxes::count >= std::size_t{1} << RegionOverlap::most_bits)
+    throw std::length_error("more than 134 million features of a surface in contact");
 }
 
 bool holds(const Bounds& outer, const Bounds& inner) {
@@ -133,7 +143,7 @@ class PairSearch::Step {
         lowest = std::min(lowest, normal.dot(middle - pose->at(body.point)) - normal.cwiseAbs().dot(half));
       }
       if (path.angle() > 0) lowest -= seen_bulge(path, (middle - pivot).norm() + half.norm());
-      if (lowest < reach_) add(PairKind::vertex_plane, static_cast<int>(i), 0);
+      if (lowest <= reach_) add(PairKind::vertex_plane, static_cast<int>(i), 0);
     }
   }
 
@@ -207,7 +217,7 @@ PairSearch::PairSearch(const Surface& cloth, const Vec3Field& start, const std::
     for (std::size_t i = 0; i < start.size(); ++i) boxes_[Feature::vertex].push_back(bounds_of(start[i]));
     spread(cloth_, boxes_);
     for (const Feature feature : {Feature::edge, Feature::face})
-      own_trees_[feature] = BoxTree(boxes_[feature]);
+      expect_to_be_counted(boxes_[feature].size()), own_trees_[feature] = BoxTree(boxes_[feature]);
     meetings_.push_back({.kind = PairKind::edge_edge});
     meetings_.push_back({.kind = PairKind::vertex_face});
   }
@@ -222,7 +232,7 @@ PairSearch::PairSearch(const Surface& cloth, const Vec3Field& start, const std::
     spread(bodies[k].surface, boxes_);
     for (const Feature feature : {Feature::vertex, Feature::edge, Feature::face}) {
       mesh_trees_[k][feature] = BoxTree(boxes_[feature]);
-      assert(boxes_[feature].size() / EightBoxes::count < std::size_t{1} << RegionOverlap::most_bits);
+      expect_to_be_counted(boxes_[feature].size());
       fill(mesh_regions_[k][feature], bodies[k].surface, feature, mesh_trees_[k][feature].order(), vertices);
     }
     for (const PairKind kind : {PairKind::edge_edge, PairKind::vertex_face, PairKind::face_vertex})
@@ -239,20 +249,23 @@ void PairSearch::set_team(WorkerTeam* team) {
 /// moves. They may be too many; the later tests use the bounds of this step, so that the pairs do not depend
 /// on the cache.
 bool PairSearch::keeps_overlaps(const SweptBounds& swept, const std::vector<PoseInterpolation>& paths) const {
-  if (cached_.size() != particles_.size() || cached_reach_ != swept.reach) return false;
+  if (cached_.size() != particles_.size() || cached_poses_.size() != paths.size() ||
+      cached_reach_ != swept.reach || cached_own_reach_ != swept.own_reach)
+    return false;
   for (const Meeting& meeting : meetings_) {
     if (meeting.obstacle == FeaturePair::cloth_itself) continue;
     const PoseInterpolation& path = paths[at(meeting.obstacle)];
     if (!path.is_still() || path.to() != cached_poses_[at(meeting.obstacle)]) return false;
   }
+  const double of_rounding = 0.01 * skin_;  // of boxes in single precision
   for (std::size_t i = 0; i < particles_.size(); ++i)
-    if (!holds(cached_[i], particles_[i])) return false;
+    if (!holds(cached_[i], particles_[i].grown(of_rounding))) return false;
   return true;
 }
 
 void PairSearch::find_overlaps(const SweptBounds& swept, const std::vector<PoseInterpolation>& paths) {
   if (meetings_.empty() || keeps_overlaps(swept, paths)) return;
-  cached_reach_ = swept.reach;
+  cached_reach_ = swept.reach, cached_own_reach_ = swept.own_reach;
   cached_.resize(particles_.size());
   for (std::size_t i = 0; i < particles_.size(); ++i) cached_[i] = particles_[i].grown(skin_);
   cached_poses_.clear();

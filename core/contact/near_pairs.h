@@ -1,9 +1,8 @@
 // Broad phase: the pairs of features that may collide within a round. Particles are bounded by capsules,
-// which they do not leave until the next search, and obstacles' features by boxes around their whole paths,
-// so that no pair is missed at any speed.
+// which they do not leave until the next search, and seen from obstacles for the whole of their paths, so
+// that no pair is missed at any speed.
 #pragma once
 
-#include <cstdint>
 #include <vector>
 
 #include "contact/feature_pairs.h"
@@ -83,7 +82,8 @@ class PairSearch {
   std::vector<Bounds> particles_;          ///< of this search
   std::vector<unsigned> outcodes_;         ///< of particles, scratch
   OfFeatures<std::vector<Bounds>> boxes_;  ///< scratch
-  std::vector<RoundedRegion> near_;        ///< of the particles, grown by the reach
+  std::vector<RoundedRegion> near_;        ///< of the particles, in the coordinates of the far side; grown by
+                                           ///< the reach, of the cloth itself by half of it
   OfFeatures<Regions> own_regions_;
   struct Part {  ///< of one share
     std::vector<FeaturePair> pairs;
@@ -94,7 +94,7 @@ class PairSearch {
 
   std::vector<Bounds> cached_;  ///< of the particles, for which the overlaps hold
   std::vector<Pose> cached_poses_;
-  double cached_reach_ = 0;
+  double cached_reach_ = 0, cached_own_reach_ = 0;
 };
 
 }  // namespace cloth

@@ -9,7 +9,8 @@
 
 namespace cloth {
 
-/// A feature, and a bit for each of the places 8 `eight` to 8 `eight` + 7 of an order that it may overlap.
+/// A feature, and a bit for each of the places 8 `eight` to 8 `eight` + 7 of an order, of those that exist,
+/// that it may overlap.
 struct RegionOverlap {
   static constexpr int most_bits = 24;
 
@@ -19,7 +20,7 @@ struct RegionOverlap {
 
 struct RegionKernels {
   /// Writes the places of these overlaps whose regions may overlap `region`, one after the other, and returns
-  /// how many there are: at most eight for each overlap. Asked of one query at a time.
+  /// how many there are: `places` has room for eight for each overlap. Asked of one query at a time.
   int (*find)(const EightRegions* eights, const RegionOverlap* overlaps, int count,
               const RoundedRegion& region, int* places);
 

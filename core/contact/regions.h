@@ -33,10 +33,13 @@ inline Eigen::Vector4d along_diagonals(const Vec3& p) {
   return {p.x() + p.y() + p.z(), p.x() + p.y() - p.z(), p.x() - p.y() + p.z(), p.y() + p.z() - p.x()};
 }
 
-/// m, the extents along diagonals: of a segment whose ends are at these, grown by `beyond`.
+/// `from`, `to` and `beyond`, in m along the diagonals, which are not of length one: of a segment's ends, and
+/// by how much further the region extends. The sums of three numbers are rounded.
 inline RoundedRegion rounded(const Bounds& box, const Eigen::Vector4d& from, const Eigen::Vector4d& to,
                              double beyond) {
-  const Eigen::Vector4d all = Eigen::Vector4d::Constant(beyond);
+  constexpr double of_rounding = 1e-15;
+  const double largest = std::max(from.cwiseAbs().maxCoeff(), to.cwiseAbs().maxCoeff());
+  const Eigen::Vector4d all = Eigen::Vector4d::Constant(beyond + of_rounding * largest);
   RoundedRegion region;
   Eigen::Map<Eigen::Vector3f>(region.box.lower) = box.lower.cast<float>();
   Eigen::Map<Eigen::Vector3f>(region.box.upper) = box.upper.cast<float>();

@@ -15,7 +15,7 @@ double seen_bulge(const PoseInterpolation& path, double radius);
 /// Around the path of a point of an obstacle, grown by `reach`.
 Bounds swept_box(const PoseInterpolation& path, const Vec3& pivot, const Vec3& point, double reach);
 
-/// Boxes of the cloth in the coordinates of a mesh, for its whole path, grown by `reach`.
+/// Boxes of the cloth in the coordinates of an obstacle, for its whole path, grown by `reach`.
 void seen_from_body(const ObstacleBody& body, const PoseInterpolation& path, const std::vector<Bounds>& boxes,
                     double reach, std::vector<Bounds>& seen);
 

@@ -1,6 +1,7 @@
 #include "contact/separations.h"
 
 #include <tuple>
+#include <type_traits>
 
 #include "contact/feature_sides.h"
 #include "geometry/at.h"

@@ -1,9 +1,9 @@
 // A bounding volume hierarchy: which of many boxes overlap a given one.
 //
-// Nodes have eight children, whose boxes are stored in single precision and tested at once; hits are tested
-// again in double precision, so that the result depends on the boxes and not on the tree. Rounding is
-// monotonic, so that no overlap is lost. All nodes but those at one edge of the tree are full, and its depth
-// is minimal for eight children.
+// Nodes have eight children, whose boxes are stored in single precision and tested at once. Rounding is
+// monotonic, so that no overlap is lost; but for visit_eights() hits are tested again in double precision, so
+// that the result depends on the boxes and not on the tree. All nodes but those at one edge of the tree are
+// full, and its depth is minimal for eight children.
 #pragma once
 
 #include <array>
@@ -107,7 +107,7 @@ inline RoundedBox BoxTree::rounded(const Bounds& bounds) const {
 
 template <class Callback>
 void BoxTree::visit_eights(int first, const Bounds& query, Callback&& callback) const {
-  if (nodes_.empty()) return;
+  if (nodes_.empty() || first >= end_[0]) return;
   const RoundedBox rounded_query = rounded(query);
   std::array<int, deepest*(width - 1) + 1> waiting;
   std::size_t count = 0;

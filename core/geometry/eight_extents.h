@@ -1,8 +1,8 @@
 // Extents of regions along some axes in single precision, those of eight regions side by side and tested at
-// once. Rounding keeps the order of numbers, so that regions that overlap do so when rounded.
+// once. Rounding keeps the order of numbers, so that regions that overlap do so when rounded. Kernels (a
+// source for each instruction set) use the data alone and none of these functions.
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 
@@ -19,8 +19,8 @@ struct RoundedExtents {
   /// To those of both.
   void add(const RoundedExtents& other) {
     for (std::size_t axis = 0; axis < axes; ++axis) {
-      lower[axis] = std::min(lower[axis], other.lower[axis]);
-      upper[axis] = std::max(upper[axis], other.upper[axis]);
+      lower[axis] = other.lower[axis] < lower[axis] ? other.lower[axis] : lower[axis];
+      upper[axis] = upper[axis] < other.upper[axis] ? other.upper[axis] : upper[axis];
     }
   }
 };

@@ -345,6 +345,8 @@ TEST(ClosePairs, DoNotDependOnWhatWasKeptWhereNeighboursMoveUnevenly) {
       [&](const Intersection&, const Motion&, const PairQuery&, const Found& found, const Found& fresh) {
         ASSERT_EQ(found.pairs, fresh.pairs);
         ASSERT_EQ(found.waiting, fresh.waiting);
+        for (std::size_t k = 0; k < found.pairs.size(); ++k)
+          ASSERT_EQ(found.separations[k].distance, fresh.separations[k].distance);
         waiting += found.waiting.size(), acting += found.pairs.size();
       });
   EXPECT_GT(waiting, 10000u);

@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdint>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "contact/regions.h"
@@ -12,14 +15,14 @@
 namespace cloth::test::region_kernels_test {
 namespace {
 
-/// The hull of some points, grown by a radius.
+/// The hull of some points, grown by a radius: of segments between two of them.
 struct Grown {
   std::vector<Vec3> points;
   double radius = 0;
 
   RoundedRegion region() const {
-    RoundedRegion region = rounded(Capsule{points[0], points[0], radius});
-    for (const Vec3& point : points) region.add(rounded(Capsule{point, point, radius}));
+    RoundedRegion region = rounded(Capsule{points.front(), points.back(), radius});
+    for (const Vec3& point : points) region.add(rounded(Capsule{point, points.front(), radius}));
     return region;
   }
 };
@@ -107,23 +110,29 @@ TEST_P(RegionsOfEverySet, FindsThoseAskedOfWhoseExtentsOverlap) {
   EXPECT_LT(all, 0.9 * static_cast<double>(boxes)) << "the diagonals tell nothing";
 }
 
-/// Far from the origin single precision has millimetres, or metres.
+/// Far from the origin single precision has millimetres, or centimetres.
 TEST(Regions, OverlapWhereWhatTheyBoundDoes) {
   Random random;
-  for (const double far : {0.0, 1e3, 3e7})
+  for (const double far : {0.0, 1e3, 1e5}) {
+    int told_apart = 0;
     for (int trial = 0; trial < 3000; ++trial) {
       const Vec3 around = Vec3::Constant(far);
       const Grown one = random_grown(around, random);
       Grown other = random_grown(around, random);
+      const RoundedRegion before = one.region(), elsewhere = other.region();
+      told_apart +=
+          overlap(before.box, elsewhere.box) && overlap(before.diagonals, elsewhere.diagonals) ? 0 : 1;
       const Vec3 apart = random.vector(1).normalized() * 0.999 * (one.radius + other.radius);
       const Vec3 shift = random_point_of(one, random) + apart - random_point_of(other, random);
       for (Vec3& point : other.points) point += shift;
       const RoundedRegion a = one.region(), b = other.region();
       ASSERT_TRUE(overlap(a.box, b.box) && overlap(a.diagonals, b.diagonals)) << far << ", trial " << trial;
     }
+    EXPECT_GT(told_apart, 1000) << far;
+  }
 }
 
-TEST(Regions, OfABoxHasItsCorners) {
+TEST(Regions, OfABoxHasItsCornersAndNothingBeyond) {
   Random random;
   for (int trial = 0; trial < 300; ++trial) {
     const Bounds box = bounds_of(random.vector(1), random.vector(1));
@@ -134,6 +143,10 @@ TEST(Regions, OfABoxHasItsCorners) {
         if ((corner >> axis & 1) != 0) at[axis] = box.upper[axis];
       const RoundedRegion point = rounded(Capsule{at, at, 1e-6});
       ASSERT_TRUE(overlap(region.box, point.box) && overlap(region.diagonals, point.diagonals));
+      const Vec3 beyond = at + 1e-3 * (at - 0.5 * (box.lower + box.upper)).cwiseSign();
+      const RoundedRegion outside = rounded(Capsule{beyond, beyond, 1e-6});
+      ASSERT_FALSE(overlap(region.box, outside.box));
+      ASSERT_FALSE(overlap(region.diagonals, outside.diagonals));  // each corner is the end of a diagonal
     }
   }
 }

@@ -74,7 +74,7 @@ TEST_F(EveryInstructionSet, SeparatesManyPairsToTheBitAsEachAlone) {
 
 TEST_F(EveryInstructionSet, LeavesOutOnlyPairsThatCannotComeNearOrAreNotNearest) {
   constexpr NearDistances within{10, 10}, reach{0.5, 0.4};
-  int apart = 0, waiting = 0, nearest = 0;
+  int apart = 0, waiting = 0, beyond = 0, nearest = 0;
   for_random_settings([&](const PairSetting& setting, const std::vector<FeaturePair>& pairs) {
     Random random;
     std::vector<double> motion;
@@ -93,6 +93,7 @@ TEST_F(EveryInstructionSet, LeavesOutOnlyPairsThatCannotComeNearOrAreNotNearest)
         EXPECT_GT(alone.distance, 2 * motion[k]);
         EXPECT_LE(alone.distance, reach(pairs[k]) + motion[k]);
         EXPECT_FALSE(alone.nearest);
+        beyond += alone.distance > reach(pairs[k]) ? 1 : 0;
       }
       if (::testing::Test::HasFailure()) return;
       apart += needs[k] == PairNeed::apart, waiting += needs[k] == PairNeed::waits, nearest += alone.nearest;
@@ -100,6 +101,7 @@ TEST_F(EveryInstructionSet, LeavesOutOnlyPairsThatCannotComeNearOrAreNotNearest)
   });
   EXPECT_GT(apart, 1000);
   EXPECT_GT(waiting, 10000);
+  EXPECT_GT(beyond, 1000);
   EXPECT_GT(nearest, 1000);
 }
 

@@ -83,8 +83,8 @@ void ClosePairs::collect_candidates(const PairQuery& now) {
     cached_range_[i] = range_[i] + std::min(ways_ahead * length, most_ahead * reach) + least_ahead * reach;
     around.particles[i] = {here, here, cached_range_[i]};
   }
-  for (const auto& [a, b] :
-       cloth_.edges)  // all of a feature's points may move by its widest particle's range
+  // All of a feature's points may move by the largest range of its particles.
+  for (const auto& [a, b] : cloth_.edges)
     for (const auto& [i, beside] : {std::pair(at(a), at(b)), std::pair(at(b), at(a))})
       around.particles[i].radius = std::max(around.particles[i].radius, cached_range_[beside]);
   search_.find(around, now.paths, cached_);

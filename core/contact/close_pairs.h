@@ -120,8 +120,8 @@ class ClosePairs {
   std::vector<FeaturePair> cached_;  ///< candidates
   std::vector<Sides> cached_sides_;  ///< of each
   std::vector<double> cached_room_;  ///< m, of each, its distance at cached_position_ beyond its reach
-  std::vector<double>
-      spent_;  ///< m, of features_, how far each may be at the end of this round from where it was then
+  /// m, of features_, how far each may be at the end of this round from where it was then.
+  std::vector<double> spent_;
   Vec3Field cached_position_;
   std::vector<double>
       cached_range_;  ///< m, displacement of each particle up to which the candidates are complete

@@ -72,7 +72,7 @@ struct Same {
   }
 };
 
-/// First without branches which eights have any: in half of the cases a processor would predict it wrongly.
+/// First which eights have any box that overlaps, without branches: a processor cannot predict them.
 int find(const EightRegions* eights, const RegionOverlap* overlaps, int count, const RoundedRegion& region,
          int* places) {
   const Same<3> box(region.box);

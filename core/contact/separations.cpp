@@ -67,8 +67,8 @@ void PairBatch::finish_triangles(const Take& take) {
   triangles_.count = 0;
 }
 
-/// take(k, points, closest) for pairs that have closest points by vectors, alone(k) for the others: by runs
-/// of pairs of one kind with one obstacle.
+/// take(k, points, closest) for pairs that have closest points by vectors, where points() gives those of
+/// their features, and alone(k) for the others: by runs of pairs of one kind with one obstacle.
 template <class Take, class Alone>
 void PairBatch::go_through(std::span<const FeaturePair> pairs, const Take& take, const Alone& alone) {
   for (std::size_t begin = 0, end = 0; begin < pairs.size(); begin = end) {

@@ -3,12 +3,11 @@
 //
 // The result depends on the present positions and swept bounds only. While the obstacles are at rest,
 // candidates from PairSearch are cached for several rounds, as in neighbour lists with a skin (Verlet 1967):
-// the distance of a pair decreases by at most the displacements of its particles, so that a pair whose cached
-// distance exceeds them is skipped without computing its separation.
+// a pair whose distance was larger than what its particles have moved by since, and may yet, is skipped
+// without computing its separation.
 #pragma once
 
-#include "contact/near_pairs.h"
-#include "contact/separations.h"
+#include "contact/candidates.h"
 #include "kernels/balanced_shares.h"
 
 namespace cloth {
@@ -29,20 +28,16 @@ struct WaitingPair {
   bool operator==(const WaitingPair&) const = default;
 };
 
-struct PairQuery {
-  const Vec3Field& position;                    ///< m, of the particles
-  const SweptBounds& swept;                     ///< of the particles in this round, and the reaches
-  const std::vector<PoseInterpolation>& paths;  ///< of the obstacles in this substep
-  const std::vector<Pose>& poses;               ///< of the obstacles now
-  const PlacedBodies* placed = nullptr;         ///< in these poses
-};
-
 class ClosePairs {
  public:
   /// The arguments are those of PairSearch.
   ClosePairs(const Surface& cloth, const Vec3Field& start, const std::vector<ObstacleBody>& bodies,
              bool with_itself, double skin)
-      : cloth_(cloth), bodies_(bodies), search_(cloth, start, bodies, with_itself, skin) {}
+      : cloth_(cloth),
+        bodies_(bodies),
+        search_(cloth, start, bodies, with_itself, skin),
+        found_(cloth, bodies),
+        kept_(cloth, bodies) {}
 
   /// Null: one thread. Results do not depend on the team.
   void set_team(WorkerTeam* team);
@@ -56,16 +51,12 @@ class ClosePairs {
             std::vector<WaitingPair>& waiting);
 
   /// Drops the cached candidates. Call it after the reaches have changed.
-  void forget() { cached_range_.clear(), search_.forget(); }
+  void forget() { kept_.clear(), search_.forget(); }
 
   PairSearch& search() { return search_; }
   const PairSearch& search() const { return search_; }
 
  private:
-  /// The features of a candidate: their numbers, or places in `features_`.
-  struct Sides {
-    int near, far;
-  };
   struct Part {  ///< the result of one thread
     std::vector<FeaturePair> pairs;
     std::vector<WaitingPair> waiting;
@@ -80,25 +71,15 @@ class ClosePairs {
 
   void measure(const PairQuery& now);
   bool all_at_rest(const PairQuery& now) const;
-  bool holds(const PairQuery& now) const;
-  void collect_candidates(const PairQuery& now);
-  double reach_of(const FeaturePair& pair, const SweptBounds& swept) const;
-  Sides sides_of(const FeaturePair& pair) const;
-  void drop_far_candidates();
+  void measure_moved(const PairQuery& now);
   bool add_spent();
-  void take_features(std::vector<Sides>& sides);
-  void spread(const std::vector<double>& of_particles, std::vector<double>& of_features) const;
   bool is_beyond(std::size_t kept) const;
-  double motion_of(const FeaturePair& pair, const Sides& sides) const;
+  double motion_of(const FeaturePair& pair, const Candidates::Sides& sides) const;
   Role role_of(const FeaturePair& pair, const Separation& separation, double motion,
                const SweptBounds& swept) const;
   void separate_part(const PairQuery& now, Part& part) const;
   template <class Beyond>
-  void separate_all(const PairQuery& now, const std::vector<FeaturePair>& candidates,
-                    const std::vector<Sides>& sides, const Beyond& beyond);
-  // Numbers of features of the cloth: its vertices, one of all features of obstacles, edges, faces.
-  int first_edge() const { return static_cast<int>(range_.size()) + 1; }
-  int first_face() const { return first_edge() + static_cast<int>(cloth_.edges.size()); }
+  void separate_all(const PairQuery& now, const Candidates& candidates, const Beyond& beyond);
 
   const Surface& cloth_;
   const std::vector<ObstacleBody>& bodies_;
@@ -108,24 +89,15 @@ class ClosePairs {
   std::vector<Part> parts_{1};  ///< of each thread
 
   std::vector<double> range_;             ///< m, bound of each particle's displacement in this round
-  std::vector<int> features_;             ///< of the candidates, by their numbers, ascending
-  std::vector<int> place_of_feature_;     ///< scratch
-  std::vector<double> range_of_feature_;  ///< m, of features_
+  std::vector<double> range_of_feature_;  ///< m, of the features of the candidates
   std::vector<double> obstacle_paths_;    ///< m, of each: bound of its points' displacement in this substep
-  std::vector<double> moved_;       ///< m, displacement of each particle since the candidates were found
-  double longest_ = 0;              ///< m, longest of the particles' displacements
-  std::vector<FeaturePair> found_;  ///< candidates that are not cached
-  std::vector<Sides> found_sides_;  ///< of each
-
-  std::vector<FeaturePair> cached_;  ///< candidates
-  std::vector<Sides> cached_sides_;  ///< of each
-  std::vector<double> cached_room_;  ///< m, of each, its distance at cached_position_ beyond its reach
-  /// m, of features_, how far each may be at the end of this round from where it was then.
+  double longest_ = 0;                    ///< m, longest of the particles' displacements
+  std::vector<FeaturePair> found_pairs_;  ///< scratch
+  Candidates found_;                      ///< for one round alone
+  Candidates kept_;
+  std::vector<double> moved_;  ///< m, displacement of each particle since those kept were found
+  /// m, of their features, how far each may be at the end of this round from where it was then.
   std::vector<double> spent_;
-  Vec3Field cached_position_;
-  std::vector<double>
-      cached_range_;  ///< m, displacement of each particle up to which the candidates are complete
-  std::vector<Pose> cached_poses_;
 };
 
 }  // namespace cloth

@@ -54,6 +54,11 @@ double longest_path(const ObstacleBody& body, const PoseInterpolation& path) {
                                            : straight + path.angle() * path.largest_stretch() * body.reach;
 }
 
+bool same_place(const ObstacleBody& body, const Pose& a, const Pose& b) {
+  return a == b ||
+         (body.kind == BodyKind::ball && a.at(body.center) == b.at(body.center) && a.stretch == b.stretch);
+}
+
 std::int64_t substeps_for(const std::vector<ObstacleBody>& bodies,
                           const std::vector<PoseInterpolation>& paths, double edge) {
   double substeps = 1;

@@ -35,6 +35,9 @@ ObstacleBody body_of(const Obstacle& obstacle);
 /// rotates.
 double longest_path(const ObstacleBody& body, const PoseInterpolation& path);
 
+/// Whether the body is at the same place in both poses; the rotation of a sphere does not matter.
+bool same_place(const ObstacleBody& body, const Pose& a, const Pose& b);
+
 /// Into how many equal substeps contact divides a step in which the bodies follow these paths; 1 for most
 /// steps. A separating plane is valid for small rotations only, and a fast triangle mesh sweeps over too many
 /// features. `edge`: mean length of the cloth's edges, in m.

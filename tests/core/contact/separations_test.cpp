@@ -3,6 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <span>
+
+#include "contact/distance_bounds.h"
 #include "geometry/at.h"
 #include "geometry/bounds.h"
 #include "kernels/instruction_set.h"
@@ -112,6 +118,58 @@ TEST_F(EveryInstructionSet, FindsTheDistancesOfTheSeparations) {
     for (std::size_t k = 0; k < pairs.size(); ++k)
       ASSERT_EQ(all[k], separate(pairs[k], setting, 0).distance) << static_cast<int>(pairs[k].kind);
   });
+}
+
+/// Also far from the origin, where only differences of coordinates are small.
+TEST_F(EveryInstructionSet, BoundsDistancesFromBelow) {
+  constexpr double of_rounding = 1e-9, close = 2e-5;  // m
+  int with_vertices = 0, weak = 0;
+  for_random_settings([&](const PairSetting& near, const std::vector<FeaturePair>& unsorted) {
+    std::vector<FeaturePair> pairs = unsorted;
+    std::sort(pairs.begin(), pairs.end());
+    for (const double away : {0.0, 1e6}) {
+      const Vec3 shift(away, -away, 0.5 * away);
+      Vec3Field position = near.position;
+      for (std::size_t i = 0; i < position.size(); ++i) position.add(i, shift);
+      std::vector<Pose> poses = near.poses;
+      for (Pose& pose : poses) pose.translation += shift;
+      const PairSetting setting{near.cloth, position, near.bodies, poses};
+      std::vector<double> distances(pairs.size()), bounds(pairs.size());
+      PairBatch(setting).find_distances(pairs, distances.data());
+      DistanceBounds of_pairs;
+      of_pairs.begin(setting, pairs);
+      const std::size_t part = pairs.size() / 3;  // the calls of two threads
+      of_pairs.find(std::span(pairs).first(part), bounds.data());
+      of_pairs.find(std::span(pairs).subspan(part), bounds.data() + part);
+      for (std::size_t k = 0; k < pairs.size(); ++k) {
+        ASSERT_LE(bounds[k], distances[k] + of_rounding) << static_cast<int>(pairs[k].kind) << " at " << away;
+        if (shape_of(pairs[k].kind) == PairShape::point_and_solid || pairs[k].kind == PairKind::face_sphere)
+          continue;
+        ++with_vertices, weak += bounds[k] < distances[k] - close ? 1 : 0;
+      }
+    }
+  });
+  EXPECT_GT(with_vertices, 100000);
+  EXPECT_LT(weak, with_vertices / 1000);
+}
+
+/// Too far apart: a bound that says nothing.
+TEST_F(EveryInstructionSet, BoundsNothingBeyondSinglePrecision) {
+  constexpr float huge = 1e30F, infinity = std::numeric_limits<float>::infinity();
+  for (const InstructionSet set : supported_instruction_sets()) {
+    set_instruction_set(set);
+    const BoundKernels& kernels = active_kernels<BoundKernels>();
+    for (const float number : {huge, -huge, infinity, -infinity}) {
+      const std::array<RoundedPoint, 4> points{
+          RoundedPoint{{0, 0, 0, 0}}, {{1, 0, 0, 0}}, {{0, 1, 0, 0}}, {{0, number, 1, 0}}};
+      constexpr PairVertices pair{{0, 1, 2, 3}};
+      float bound = 0;
+      kernels.of_segments(points.data(), points.data(), &pair, 1, &bound);
+      EXPECT_EQ(bound, -infinity) << name_of(set) << number;
+      kernels.of_triangles(points.data(), points.data(), &pair, 1, &bound);
+      EXPECT_EQ(bound, -infinity) << name_of(set) << number;
+    }
+  }
 }
 
 TEST_F(EveryInstructionSet, SeparatesFromObstaclesAtRestToTheBitAsFromMovingOnes) {

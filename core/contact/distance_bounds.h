@@ -1,0 +1,28 @@
+// Lower bounds of the distances of many pairs of features (bound_kernels.h), for choosing among them.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "contact/bound_kernels.h"
+#include "contact/feature_pairs.h"
+
+namespace cloth {
+
+class DistanceBounds {
+ public:
+  /// Keeps its memory from one use to the next. `setting` must outlive the calls of find(); the pairs are
+  /// those of PairSearch, in their order.
+  void begin(const PairSetting& setting, std::span<const FeaturePair> pairs);
+  /// m, one for each of these, which are some of the pairs. Threads may call it at once.
+  void find(std::span<const FeaturePair> pairs, double* bounds) const;
+
+ private:
+  void find_run(std::span<const FeaturePair> pairs, double* bounds) const;
+
+  const PairSetting* setting_ = nullptr;
+  std::vector<RoundedPoint> cloth_;
+  std::vector<std::vector<RoundedPoint>> bodies_;  ///< the vertices of those with pairs
+};
+
+}  // namespace cloth

@@ -30,7 +30,7 @@ class LimitedMemory {
   void next(const Vec3Field& residual, double length, const LinearMap& preconditioner, Vec3Field& direction);
 
  private:
-  static constexpr std::size_t most = 8;
+  static constexpr std::size_t most = 5;
   using Products = std::array<double, most + 1>;
   struct Pair {
     Vec3Field change, growth;

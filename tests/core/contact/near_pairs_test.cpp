@@ -353,6 +353,51 @@ TEST(ClosePairs, DoNotDependOnWhatWasKeptWhereNeighboursMoveUnevenly) {
   EXPECT_GT(acting, 10000u);
 }
 
+/// A far throw that is taken back, and an obstacle that goes and returns: what was kept before is taken
+/// again.
+TEST(ClosePairs, DoNotDependOnRoundsWithoutWhatIsKept) {
+  std::size_t acting = 0, waiting = 0, thrown = 0;
+  Random random;
+  const auto moved = [&](const Vec3Field& from, double most) {
+    Motion motion = random_motion(from, most, random);
+    motion.reach = 0.03, motion.own_reach = 0.05, motion.margin = 0.0005;
+    return motion;
+  };
+  for (int trial = 0; trial < 20; ++trial) {
+    SCOPED_TRACE(trial);
+    Intersection meeting = random_meeting(random);
+    const Sheet& sheet = meeting.sheet;
+    const std::vector<Pose> poses = poses_at_begin(meeting);
+    std::vector<PoseInterpolation> still;
+    for (const Pose& pose : poses) still.emplace_back(Vec3::Zero(), pose, pose);
+    ClosePairs keeping(sheet.surface, sheet.position, meeting.bodies, true, 0.02);
+    Vec3Field position = sheet.position;
+    for (int step = 0; step < 10; ++step) {
+      const bool is_far = still.empty() || step % 2 == 0;
+      std::vector<PoseInterpolation> paths = still;
+      if (!is_far)
+        paths[0] = PoseInterpolation(meeting.bodies[0].pivot, poses[0],
+                                     {poses[0].rotation, poses[0].translation + random.vector(0.1)});
+      const SweptBounds without = moved(position, is_far ? 0.3 : 0.0005).swept();
+      thrown += Found(keeping, {position, without, paths, poses}).pairs.size();
+      const Motion motion = moved(position, 0.0005);
+      const SweptBounds swept = motion.swept();
+      const PairQuery now{motion.from, swept, still, poses};
+      ClosePairs anew(sheet.surface, sheet.position, meeting.bodies, true, 0.02);
+      const Found found(keeping, now), fresh(anew, now);
+      ASSERT_EQ(found.pairs, fresh.pairs);
+      ASSERT_EQ(found.waiting, fresh.waiting);
+      for (std::size_t k = 0; k < found.pairs.size(); ++k)
+        ASSERT_EQ(found.separations[k].distance, fresh.separations[k].distance);
+      acting += found.pairs.size(), waiting += found.waiting.size();
+      position = motion.to;
+    }
+  }
+  EXPECT_GT(acting, 1000u);
+  EXPECT_GT(waiting, 1000u);
+  EXPECT_GT(thrown, 1000u);
+}
+
 TEST(ClosePairs, ThatWaitAreNoContactsAndKeepHalfTheirDistance) {
   std::size_t looked = 0;
   find_on_walks({.wide = 10}, [&](const Intersection& meeting, const Motion& motion, const PairQuery& now,

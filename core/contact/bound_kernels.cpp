@@ -50,7 +50,7 @@ CLOTHLAB_INLINE V low_halves(V a, V b) {
 CLOTHLAB_INLINE V high_halves(V a, V b) {
   return __builtin_shufflevector(a, b, 2, 3, 18, 19, 6, 7, 22, 23, 10, 11, 26, 27, 14, 15, 30, 31);
 }
-#elif defined(__AVX__)
+#elif defined(__AVX2__)
 CLOTHLAB_INLINE V unpacked_low(V a, V b) {
   return __builtin_shufflevector(a, b, 0, 8, 1, 9, 4, 12, 5, 13);
 }
@@ -91,7 +91,7 @@ CLOTHLAB_INLINE V every_fourth(const RoundedPoint* points, const int* vertices) 
     return __builtin_shufflevector(load(k), load(k + 1), 0, 1, 2, 3, 4, 5, 6, 7);
   };
   return __builtin_shufflevector(pair(0), pair(2), 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
-#elif defined(__AVX__)
+#elif defined(__AVX2__)
   return __builtin_shufflevector(load(0), load(1), 0, 1, 2, 3, 4, 5, 6, 7);
 #else
   return load(0);
@@ -121,22 +121,27 @@ struct Block {
   }
 };
 
-/// The square of a distance along n, of which `along` is |n| times as much; 0 where that is negative.
+/// The square of a distance along n, of which `along` is |n| times as much; 0 where that is negative, or
+/// where n is so short that its square has lost digits.
 CLOTHLAB_INLINE V square_of(V along, const Vector& n) {
+  constexpr float least = 1e-24F;
   const V length = dot(n, n), ahead = larger(along, V{});
-  return choose(length > 0, ahead * ahead / length, V{});
+  return choose(length > least, ahead * ahead / length, V{});
 }
 
 /// Writes the bounds of the first `count` pairs of a block.
 CLOTHLAB_INLINE void store(V square, V largest, int count, float* bounds) {
-  // A coordinate is rounded to 2^-24 of itself, of four points; some ten products and sums follow.
-  constexpr float of_rounding = 64 / 16777216.0F, too_large = 1e15F;
+  // In parts of 2^-24 times the largest coordinate, along a unit normal: 3.5 by rounded coordinates, up to 28
+  // (of triangles 40) by products with differences of them, some 9 by sums, the quotient and the root.
+  constexpr float of_rounding = 64 / 16777216.0F;
+  constexpr float of_squares = 1e-10F;  // m, where these are too small for all of their digits
+  constexpr float too_large = 1e5F;     // m; its sixth power, and a thousand times that, is a number still
   alignas(64) float squares[width], coordinates[width];
   __builtin_memcpy(squares, &square, sizeof square);
   __builtin_memcpy(coordinates, &largest, sizeof largest);
   for (int lane = 0; lane < count; ++lane)
     bounds[lane] = coordinates[lane] < too_large
-                       ? __builtin_sqrtf(squares[lane]) - of_rounding * coordinates[lane]
+                       ? __builtin_sqrtf(squares[lane]) - (of_rounding * coordinates[lane] + of_squares)
                        : -__builtin_inff();
 }
 

@@ -1,7 +1,10 @@
 #include "contact/candidates.h"
 
 #include <algorithm>
+#include <array>
 #include <numeric>
+#include <span>
+#include <utility>
 
 #include "contact/obstacle_body.h"
 #include "geometry/at.h"
@@ -49,7 +52,6 @@ void Candidates::take(std::vector<FeaturePair>& pairs) {
 }
 
 void Candidates::measure_rooms(const PairQuery& now, WorkerTeam* team) {
-  constexpr std::size_t least_pairs = 100;  // worth a thread of their own
   room_.resize(pairs_.size()), sides_.resize(pairs_.size());
   const PairSetting setting{cloth_, now.position, bodies_, now.poses, now.placed};
   bounds_.begin(setting, pairs_);
@@ -112,6 +114,7 @@ Candidates::Sides Candidates::sides_of(const FeaturePair& pair) const {
 bool Candidates::holds(const PairQuery& now, const std::vector<double>& moved,
                        const std::vector<double>& range) const {
   if (range_.size() != range.size() || poses_.size() != bodies_.size()) return false;
+  if (around_.reach != now.swept.reach || around_.own_reach != now.swept.own_reach) return false;
   for (std::size_t k = 0; k < bodies_.size(); ++k)
     if (!same_place(bodies_[k], now.poses[k], poses_[k])) return false;
   for (std::size_t i = 0; i < range.size(); ++i)

@@ -13,6 +13,9 @@ namespace cloth {
 
 class WorkerTeam;
 
+/// Least number of pairs that is worth a thread of its own.
+inline constexpr std::size_t least_pairs = 100;
+
 struct PairQuery {
   const Vec3Field& position;                    ///< m, of the particles
   const SweptBounds& swept;                     ///< of the particles in this round, and the reaches

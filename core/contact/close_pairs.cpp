@@ -1,13 +1,10 @@
 #include "contact/close_pairs.h"
 
 #include <algorithm>
-#include <array>
-#include <numeric>
 #include <utility>
 
 #include "contact/obstacle_body.h"
 #include "geometry/at.h"
-#include "kernels/in_shares.h"
 
 namespace cloth {
 namespace {

@@ -14,9 +14,6 @@ namespace cloth {
 
 /// Pairs nearer than this many thicknesses become contact constraints; others only bound the motion.
 inline constexpr double near_factor = 1.5;
-/// Least number of pairs that is worth a thread of its own.
-inline constexpr std::size_t least_pairs = 100;
-
 inline bool is_contact(const Separation& separation, double thickness) {
   return separation.nearest && separation.distance < near_factor * thickness && !separation.normal.isZero(0);
 }

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "contact/separations.h"
 #include "geometry/at.h"
+#include "geometry/bounds.h"
 #include "kernels/instruction_set.h"
 
 namespace cloth {

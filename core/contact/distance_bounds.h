@@ -14,7 +14,8 @@ class DistanceBounds {
   /// Keeps its memory from one use to the next. `setting` must outlive the calls of find(); the pairs are
   /// those of PairSearch, in their order.
   void begin(const PairSetting& setting, std::span<const FeaturePair> pairs);
-  /// m, one for each of these, which are some of the pairs. Threads may call it at once.
+  /// m, one for each of these, which are some of the pairs that begin() had; may be negative or -infinity. Of
+  /// planes, boxes as solids and balls the distance itself. Threads may call it at once.
   void find(std::span<const FeaturePair> pairs, double* bounds) const;
 
  private:

@@ -5,8 +5,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <span>
+#include <vector>
 
 #include "contact/distance_bounds.h"
 #include "geometry/at.h"
@@ -153,13 +155,54 @@ TEST_F(EveryInstructionSet, BoundsDistancesFromBelow) {
   EXPECT_LT(weak, with_vertices / 1000);
 }
 
-/// Too far apart: a bound that says nothing.
-TEST_F(EveryInstructionSet, BoundsNothingBeyondSinglePrecision) {
+/// m, of the points as they are when rounded.
+double distance_in(const std::array<RoundedPoint, 4>& points, bool of_segments) {
+  std::array<Vec3, 4> p;
+  for (std::size_t k = 0; k < 4; ++k) p[k] = Vec3(points[k].of[0], points[k].of[1], points[k].of[2]);
+  const Vec3 apart = of_segments ? closest_of_segments(p[0], p[1], p[2], p[3]).separation
+                                 : closest_on_triangle(p[0], p[1], p[2], p[3]).separation;
+  return apart.norm();
+}
+
+/// Slivers whose normal is shorter than single precision has squares of; sizes from there to beyond it.
+TEST_F(EveryInstructionSet, BoundsDistancesOfEverySizeFromBelow) {
+  Random random;
+  std::vector<std::array<RoundedPoint, 4>> all{
+      {{{{.01F, 0, .5F, 0}}, {{0, 0, 0, 0}}, {{.01F, 0, 0, 0}}, {{.02F, 1e-20F, 0, 0}}}},
+      {{{{0, .1F, 0, 0}}, {{0, 0, 0, 0}}, {{1e-17F, 0, 0, 0}}, {{0, 0, 1e-3F, 0}}}}};
+  const auto rounded = [](const Vec3& p) {
+    return RoundedPoint{{static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z()), 0}};
+  };
+  for (int power = -30; power <= 30; ++power)
+    for (int trial = 0; trial < 200; ++trial) {
+      const double size = std::pow(10.0, power) * random.uniform(1, 10);
+      std::array<Vec3, 4> p;
+      for (Vec3& point : p) point = random.vector(size);
+      if (trial % 3 == 0) p[0] = 0.2 * p[1] + 0.5 * p[2] + 0.3 * p[3];  // in the triangle
+      if (trial % 3 == 1) p[3] = p[2] + 1e-6 * (p[3] - p[2]);           // a sliver, a short segment
+      all.push_back({rounded(p[0]), rounded(p[1]), rounded(p[2]), rounded(p[3])});
+    }
+  constexpr PairVertices pair{{0, 1, 2, 3}};
+  for (const InstructionSet set : supported_instruction_sets()) {
+    set_instruction_set(set);
+    const BoundKernels& kernels = active_kernels<BoundKernels>();
+    for (const auto& points : all)
+      for (const bool of_segments : {false, true}) {
+        float bound = 0;
+        (of_segments ? kernels.of_segments : kernels.of_triangles)(points.data(), points.data(), &pair, 1,
+                                                                   &bound);
+        ASSERT_LE(static_cast<double>(bound), (1 + 1e-12) * distance_in(points, of_segments))
+            << name_of(set) << ", " << points[1].of[0] << ", segments " << of_segments;
+      }
+  }
+}
+
+TEST_F(EveryInstructionSet, BoundsNothingTooFarAway) {
   constexpr float huge = 1e30F, infinity = std::numeric_limits<float>::infinity();
   for (const InstructionSet set : supported_instruction_sets()) {
     set_instruction_set(set);
     const BoundKernels& kernels = active_kernels<BoundKernels>();
-    for (const float number : {huge, -huge, infinity, -infinity}) {
+    for (const float number : {2e5F, 1e10F, huge, -huge, infinity, -infinity}) {
       const std::array<RoundedPoint, 4> points{
           RoundedPoint{{0, 0, 0, 0}}, {{1, 0, 0, 0}}, {{0, 1, 0, 0}}, {{0, number, 1, 0}}};
       constexpr PairVertices pair{{0, 1, 2, 3}};

@@ -112,7 +112,6 @@ struct Block {
     point[which] = {low_halves(xy_of_two, xy_of_others), high_halves(xy_of_two, xy_of_others),
                     low_halves(unpacked_high(first, second), unpacked_high(third, fourth))};
   }
-  CLOTHLAB_INLINE const Vector& at(int which) const { return point[which]; }
   CLOTHLAB_INLINE V largest_coordinate() const {
     V most{};
     for (const Vector& p : point)
@@ -147,8 +146,8 @@ CLOTHLAB_INLINE void store(V square, V largest, int count, float* bounds) {
 
 /// n: from the closest point of the second segment to that of the first (Ericson 2005, 5.1.9).
 CLOTHLAB_INLINE V square_of_segments(const Block& block) {
-  const Vector a = block.at(0), c = block.at(2);
-  const Vector first = block.at(1) - a, second = block.at(3) - c, apart = a - c;
+  const Vector a = block.point[0], c = block.point[2];
+  const Vector first = block.point[1] - a, second = block.point[3] - c, apart = a - c;
   const V first_square = dot(first, first), second_square = dot(second, second), both = dot(first, second);
   const V on_first = dot(first, apart), on_second = dot(second, apart);
   const V free =
@@ -163,7 +162,7 @@ CLOTHLAB_INLINE V square_of_segments(const Block& block) {
 
 /// The best of the triangle's normal and the directions from the closest points of its edges.
 CLOTHLAB_INLINE V square_of_triangle(const Block& block) {
-  const Vector p = block.at(0), a = block.at(1), b = block.at(2), c = block.at(3);
+  const Vector p = block.point[0], a = block.point[1], b = block.point[2], c = block.point[3];
   const Vector ab = b - a, ac = c - a, apart = p - a, normal = cross(ab, ac);
   V best = square_of(size_of(dot(normal, apart)) - larger(size_of(dot(normal, ab)), size_of(dot(normal, ac))),
                      normal);

@@ -18,8 +18,7 @@ struct PairVertices {
   int of[4];
 };
 
-/// `bounds`: m, one for each pair; may be negative, and is -infinity where a
-/// coordinate is above 1e5 m.
+/// `bounds`: m, one for each pair; may be negative, and is -infinity where a coordinate is above 1e5 m.
 struct BoundKernels {
   /// Of the segments between near[of[0]] and near[of[1]], and far[of[2]] and far[of[3]].
   void (*of_segments)(const RoundedPoint* near, const RoundedPoint* far, const PairVertices* pairs, int count,

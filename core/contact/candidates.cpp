@@ -56,7 +56,7 @@ void Candidates::measure_rooms(const PairQuery& now, WorkerTeam* team) {
   const PairSetting setting{cloth_, now.position, bodies_, now.poses, now.placed};
   bounds_.begin(setting, pairs_);
   in_shares(team, pairs_.size(), least_pairs, [&](int, std::size_t begin, std::size_t end) {
-    bounds_.find(std::span(pairs_).subspan(begin, end - begin), room_.data() + begin);
+    bounds_.find(setting, std::span(pairs_).subspan(begin, end - begin), room_.data() + begin);
     for (std::size_t k = begin; k < end; ++k) {
       room_[k] = (1 - of_rounding) * room_[k] - reach_of(pairs_[k], around_);
       sides_[k] = sides_of(pairs_[k]);

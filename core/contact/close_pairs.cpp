@@ -43,9 +43,8 @@ bool ClosePairs::all_at_rest(const PairQuery& now) const {
 
 void ClosePairs::measure_moved(const PairQuery& now) {
   const Vec3Field& then = kept_.position();
-  moved_.assign(range_.size(), 0);
-  if (then.size() == moved_.size())
-    for (std::size_t i = 0; i < moved_.size(); ++i) moved_[i] = (now.position[i] - then[i]).norm();
+  moved_.resize(then.size());
+  for (std::size_t i = 0; i < moved_.size(); ++i) moved_[i] = (now.position[i] - then[i]).norm();
 }
 
 /// How far each feature may be at the end of this round from where it was when the candidates were found, and

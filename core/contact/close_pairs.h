@@ -14,6 +14,7 @@ namespace cloth {
 
 /// Pairs nearer than this many thicknesses become contact constraints; others only bound the motion.
 inline constexpr double near_factor = 1.5;
+
 inline bool is_contact(const Separation& separation, double thickness) {
   return separation.nearest && separation.distance < near_factor * thickness && !separation.normal.isZero(0);
 }

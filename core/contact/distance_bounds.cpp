@@ -43,7 +43,6 @@ PairVertices vertices_of(const FeaturePair& pair, const Surface& cloth, const Su
 }  // namespace
 
 void DistanceBounds::begin(const PairSetting& setting, std::span<const FeaturePair> pairs) {
-  setting_ = &setting;
   const Vec3 origin = middle_of(setting.position);
   cloth_.clear();
   for (std::size_t i = 0; i < setting.position.size(); ++i)
@@ -62,24 +61,26 @@ void DistanceBounds::begin(const PairSetting& setting, std::span<const FeaturePa
   }
 }
 
-void DistanceBounds::find(std::span<const FeaturePair> pairs, double* bounds) const {
+void DistanceBounds::find(const PairSetting& setting, std::span<const FeaturePair> pairs,
+                          double* bounds) const {
   for (std::size_t begin = 0, end = 0; begin < pairs.size(); begin = end) {
     const FeaturePair& first = pairs[begin];
     while (end < pairs.size() && pairs[end].kind == first.kind && pairs[end].obstacle == first.obstacle)
       ++end;
     if (has_vertices(first.kind))
-      find_run(pairs.subspan(begin, end - begin), bounds + begin);
+      find_run(setting, pairs.subspan(begin, end - begin), bounds + begin);
     else
-      PairBatch(*setting_).find_distances(pairs.subspan(begin, end - begin), bounds + begin);
+      PairBatch(setting).find_distances(pairs.subspan(begin, end - begin), bounds + begin);
   }
 }
 
 /// Of pairs of one kind with one obstacle.
-void DistanceBounds::find_run(std::span<const FeaturePair> pairs, double* bounds) const {
+void DistanceBounds::find_run(const PairSetting& setting, std::span<const FeaturePair> pairs,
+                              double* bounds) const {
   constexpr std::size_t block = 256;
   const FeaturePair& first = pairs.front();
   const bool is_own = first.obstacle == FeaturePair::cloth_itself;
-  const Surface& far = is_own ? setting_->cloth : setting_->bodies[at(first.obstacle)].surface;
+  const Surface& far = is_own ? setting.cloth : setting.bodies[at(first.obstacle)].surface;
   const RoundedPoint *near_points = cloth_.data(),
                      *far_points = is_own ? near_points : bodies_[at(first.obstacle)].data();
   if (first.kind == PairKind::face_vertex) std::swap(near_points, far_points);
@@ -89,7 +90,7 @@ void DistanceBounds::find_run(std::span<const FeaturePair> pairs, double* bounds
   std::array<float, block> found;
   for (std::size_t begin = 0; begin < pairs.size(); begin += block) {
     const std::size_t count = std::min(block, pairs.size() - begin);
-    for (std::size_t k = 0; k < count; ++k) vertices[k] = vertices_of(pairs[begin + k], setting_->cloth, far);
+    for (std::size_t k = 0; k < count; ++k) vertices[k] = vertices_of(pairs[begin + k], setting.cloth, far);
     find_bounds(near_points, far_points, vertices.data(), static_cast<int>(count), found.data());
     for (std::size_t k = 0; k < count; ++k) bounds[begin + k] = static_cast<double>(found[k]);
   }

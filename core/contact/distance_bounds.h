@@ -11,17 +11,15 @@ namespace cloth {
 
 class DistanceBounds {
  public:
-  /// Keeps its memory from one use to the next. `setting` must outlive the calls of find(); the pairs are
-  /// those of PairSearch, in their order.
+  /// Rounds the vertices of these pairs, which are those of PairSearch, in their order. Keeps its memory.
   void begin(const PairSetting& setting, std::span<const FeaturePair> pairs);
-  /// m, one for each of these, which are some of the pairs that begin() had; may be negative or -infinity. Of
-  /// planes, boxes as solids and balls the distance itself. Threads may call it at once.
-  void find(std::span<const FeaturePair> pairs, double* bounds) const;
+  /// m, one for each of these, which are some of the pairs that begin() had in this setting; may be negative
+  /// or -infinity. Of planes, boxes as solids and balls the distance itself. Threads may call it at once.
+  void find(const PairSetting& setting, std::span<const FeaturePair> pairs, double* bounds) const;
 
  private:
-  void find_run(std::span<const FeaturePair> pairs, double* bounds) const;
+  void find_run(const PairSetting& setting, std::span<const FeaturePair> pairs, double* bounds) const;
 
-  const PairSetting* setting_ = nullptr;
   std::vector<RoundedPoint> cloth_;
   std::vector<std::vector<RoundedPoint>> bodies_;  ///< the vertices of those with pairs
 };

@@ -141,8 +141,8 @@ TEST_F(EveryInstructionSet, BoundsDistancesFromBelow) {
       DistanceBounds of_pairs;
       of_pairs.begin(setting, pairs);
       const std::size_t part = pairs.size() / 3;  // the calls of two threads
-      of_pairs.find(std::span(pairs).first(part), bounds.data());
-      of_pairs.find(std::span(pairs).subspan(part), bounds.data() + part);
+      of_pairs.find(setting, std::span(pairs).first(part), bounds.data());
+      of_pairs.find(setting, std::span(pairs).subspan(part), bounds.data() + part);
       for (std::size_t k = 0; k < pairs.size(); ++k) {
         ASSERT_LE(bounds[k], distances[k] + of_rounding) << static_cast<int>(pairs[k].kind) << " at " << away;
         if (shape_of(pairs[k].kind) == PairShape::point_and_solid || pairs[k].kind == PairKind::face_sphere)

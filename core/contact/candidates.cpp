@@ -14,7 +14,7 @@ namespace cloth {
 namespace {
 
 /// Candidates are found for this many more displacements like the present one.
-constexpr double ways_ahead = 5;
+constexpr double ways_ahead = 4;
 /// Of the reach, how much further at most, and at least: for rounding and small motions.
 constexpr double most_ahead = 1.5, least_ahead = 0.25;
 constexpr double of_rounding = 1e-9;  ///< of a distance

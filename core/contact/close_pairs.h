@@ -49,7 +49,7 @@ class ClosePairs {
             std::vector<WaitingPair>& waiting);
 
   /// Drops the cached candidates. Call it after the reaches have changed.
-  void forget() { kept_.clear(), search_.forget(); }
+  void forget() { kept_.clear(); }
 
   PairSearch& search() { return search_; }
   const PairSearch& search() const { return search_; }

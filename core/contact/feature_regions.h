@@ -1,4 +1,4 @@
-// The features of a surface, and their boxes and rounded regions, from those of its vertices.
+// The features of a surface, and their boxes and coarse regions, from those of its vertices.
 #pragma once
 
 #include <array>
@@ -6,9 +6,10 @@
 #include <span>
 #include <vector>
 
+#include "contact/coarse_regions.h"
 #include "contact/surface.h"
+#include "geometry/at.h"
 #include "geometry/bounds.h"
-#include "geometry/eight_extents.h"
 
 namespace cloth {
 
@@ -26,15 +27,36 @@ class OfFeatures {
   std::array<T, 3> all_;
 };
 
+/// Calls with_vertices(vertices) for a feature of the surface.
+template <class WithVertices>
+auto with_vertices_of(const Surface& surface, Feature feature, int index, const WithVertices& with_vertices) {
+  if (feature == Feature::vertex) return with_vertices(std::array{index});
+  if (feature == Feature::edge) return with_vertices(surface.edges[at(index)]);
+  return with_vertices(surface.triangles[at(index)]);
+}
+
 /// From the boxes of the vertices to those of edges and faces.
 void spread(const Surface& surface, OfFeatures<std::vector<Bounds>>& boxes);
 
 /// `vertices`: the regions of all.
-RoundedRegion region_of(const Surface& surface, Feature feature, int index,
-                        std::span<const RoundedRegion> vertices);
+CoarseRegion region_of(const Surface& surface, Feature feature, int index,
+                       std::span<const CoarseRegion> vertices);
 
 /// Those of features in the given order, eight by eight.
 void fill(std::vector<EightRegions>& regions, const Surface& surface, Feature feature,
-          std::span<const int> order, std::span<const RoundedRegion> vertices);
+          std::span<const int> order, std::span<const CoarseRegion> vertices);
+
+/// Places, in an order of features, of those that have a vertex in common.
+class PlacesAtVertices {
+ public:
+  PlacesAtVertices() = default;
+  PlacesAtVertices(std::size_t vertices, const Surface& surface, Feature feature, std::span<const int> order);
+
+  std::span<const int> of(int vertex) const;
+
+ private:
+  std::vector<int> first_;  ///< of each vertex, its offset in places_; and the end
+  std::vector<int> places_;
+};
 
 }  // namespace cloth

@@ -5,100 +5,91 @@
 namespace cloth {
 namespace {
 
-using Eight [[gnu::vector_size(32)]] = float;
-
-CLOTHLAB_INLINE Eight all(float value) {
-  return Eight{value, value, value, value, value, value, value, value};
-}
-
-#ifdef __AVX__
-using Mask = Eight;
-
-CLOTHLAB_INLINE Mask at_most(const Eight& a, const Eight& b) {
-  constexpr int less_or_equal = 2;
-  return __builtin_ia32_cmpps256(a, b, less_or_equal);
-}
-CLOTHLAB_INLINE Mask both(const Mask& a, const Mask& b) {
-  return __builtin_ia32_andps256(a, b);
-}
-CLOTHLAB_INLINE unsigned bits(const Mask& mask) {
-  return static_cast<unsigned>(__builtin_ia32_movmskps256(mask));
-}
-#else
-using Mask [[gnu::vector_size(32)]] = int;
-
-CLOTHLAB_INLINE Mask at_most(const Eight& a, const Eight& b) {
-  return a <= b;
-}
-CLOTHLAB_INLINE Mask both(const Mask& a, const Mask& b) {
-  return a & b;
-}
-CLOTHLAB_INLINE unsigned bits(const Mask& mask) {
-  unsigned all = 0;
-#ifdef __SSE2__
-  using Half [[gnu::vector_size(16)]] = float;
-  Half halves[2];
-  __builtin_memcpy(halves, &mask, sizeof mask);
-  all = static_cast<unsigned>(__builtin_ia32_movmskps(halves[0]) | __builtin_ia32_movmskps(halves[1]) << 4);
-#else
-  for (int k = 0; k < 8; ++k) all |= (mask[k] & 1U) << k;
-#endif
-  return all;
-}
-#endif
+using Ends [[gnu::vector_size(32)]] = short;
 
 /// One region eight times.
-template <int axes>
-struct Same {
-  Eight lower[axes], upper[axes];
-
-  CLOTHLAB_INLINE explicit Same(const RoundedExtents<axes>& extents) {
-    for (int axis = 0; axis < axes; ++axis)
-      lower[axis] = all(extents.lower[axis]), upper[axis] = all(extents.upper[axis]);
+class Same {
+ public:
+  CLOTHLAB_INLINE explicit Same(const CoarseRegion& region) {
+    for (int axis = 0; axis < axes; ++axis) {
+      const short low = region.lower[axis], high = static_cast<short>(-region.upper[axis]);
+      ends_[axis] =
+          Ends{low, low, low, low, low, low, low, low, high, high, high, high, high, high, high, high};
+    }
   }
 
-  CLOTHLAB_INLINE unsigned overlapping(const EightExtents<axes>& others) const {
-    Mask hit = along(0, others);
-    for (int axis = 1; axis < axes; ++axis) hit = both(hit, along(axis, others));
-    return bits(hit);
+  /// A bit for each of the others that overlaps or touches it along all axes.
+  CLOTHLAB_INLINE unsigned overlapping(const EightRegions& others) const {
+    Ends outside = beyond(0, others);
+    for (int axis = 1; axis < axes; ++axis) outside |= beyond(axis, others);
+    return ~bits(outside) & 255U;
   }
 
  private:
-  CLOTHLAB_INLINE Mask along(int axis, const EightExtents<axes>& others) const {
-    Eight low, high;
-    __builtin_memcpy(&low, __builtin_assume_aligned(others.lower[axis], sizeof low), sizeof low);
-    __builtin_memcpy(&high, __builtin_assume_aligned(others.upper[axis], sizeof high), sizeof high);
-    return both(at_most(low, upper[axis]), at_most(lower[axis], high));
+  static constexpr int axes = region_axes;
+
+  CLOTHLAB_INLINE Ends beyond(int axis, const EightRegions& others) const {
+    Ends end;
+    __builtin_memcpy(&end, __builtin_assume_aligned(others.ends[axis], sizeof end), sizeof end);
+    return ends_[axis] > end;
   }
+
+  /// Of those of both ends.
+  CLOTHLAB_INLINE static unsigned bits(const Ends& mask) {
+#if defined(__AVX2__)
+    const auto bytes = __builtin_ia32_packsswb256(mask, mask);
+    const auto all = static_cast<unsigned>(__builtin_ia32_pmovmskb256(bytes));
+    return all | all >> 16;
+#else
+    unsigned all = 0;
+    for (int k = 0; k < 8; ++k) all |= ((mask[k] | mask[k + 8]) & 1U) << k;
+    return all;
+#endif
+  }
+
+  Ends ends_[axes];
 };
 
-/// First which eights have any box that overlaps, without branches: a processor cannot predict them.
-int find(const EightRegions* eights, const RegionOverlap* overlaps, int count, const RoundedRegion& region,
-         int* places) {
-  const Same<3> box(region.box);
-  const Same<4> diagonals(region.diagonals);
+/// take(overlap, hits) for those of the overlaps whose regions may overlap `region`; without branches up to
+/// there: a processor cannot predict them.
+template <class Take>
+CLOTHLAB_INLINE void take_overlapping(const EightRegions* eights, const RegionOverlap* overlaps, int count,
+                                      const CoarseRegion& region, const Take& take) {
+  const Same same(region);
   constexpr int part = 64;
-  int first[part];
-  unsigned hits[part];
-  int found = 0;
+  RegionOverlap some[part];
   for (int begin = 0; begin < count; begin += part) {
     const int end = begin + part < count ? begin + part : count;
-    int some = 0;
+    int found = 0;
     for (int k = begin; k < end; ++k) {
-      const unsigned eight = overlaps[k].eight;
-      first[some] = static_cast<int>(eight);
-      hits[some] = overlaps[k].hits & box.overlapping(eights[eight].boxes);
-      some += hits[some] != 0 ? 1 : 0;
+      const unsigned hits = overlaps[k].hits & same.overlapping(eights[overlaps[k].eight]);
+      some[found] = overlaps[k], some[found].hits = hits & 255U;
+      found += hits != 0 ? 1 : 0;
     }
-    for (int k = 0; k < some; ++k) {
-      unsigned left = hits[k] & diagonals.overlapping(eights[first[k]].diagonals);
-      for (; left != 0; left &= left - 1) places[found++] = 8 * first[k] + __builtin_ctz(left);
-    }
+    for (int k = 0; k < found; ++k) take(some[k]);
   }
+}
+
+int narrow(const EightRegions* eights, const RegionOverlap* overlaps, int count, const CoarseRegion& region,
+           RegionOverlap* left) {
+  int found = 0;
+  take_overlapping(eights, overlaps, count, region,
+                   [&](const RegionOverlap& overlap) { left[found++] = overlap; });
   return found;
 }
 
-constexpr RegionKernels table{find};
+int find(const EightRegions* eights, const RegionOverlap* overlaps, int count, const CoarseRegion& region,
+         int* places) {
+  int found = 0;
+  take_overlapping(eights, overlaps, count, region, [&](const RegionOverlap& overlap) {
+    const int first = 8 * static_cast<int>(overlap.eight);
+    for (unsigned hits = overlap.hits; hits != 0; hits &= hits - 1)
+      places[found++] = first + __builtin_ctz(hits);
+  });
+  return found;
+}
+
+constexpr RegionKernels table{narrow, find};
 
 }  // namespace
 

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "geometry/eight_extents.h"
+#include "contact/coarse_regions.h"
 #include "kernels/kernel_table.h"
 
 namespace cloth {
@@ -19,10 +19,15 @@ struct RegionOverlap {
 };
 
 struct RegionKernels {
+  /// Writes those of the overlaps whose regions may overlap `region`, with the bits of those, and returns how
+  /// many there are: `left` has room for all, and may not be `overlaps`.
+  int (*narrow)(const EightRegions* eights, const RegionOverlap* overlaps, int count,
+                const CoarseRegion& region, RegionOverlap* left);
+
   /// Writes the places of these overlaps whose regions may overlap `region`, one after the other, and returns
   /// how many there are: `places` has room for eight for each overlap. Asked of one query at a time.
   int (*find)(const EightRegions* eights, const RegionOverlap* overlaps, int count,
-              const RoundedRegion& region, int* places);
+              const CoarseRegion& region, int* places);
 
   CLOTHLAB_KERNEL_TABLE(RegionKernels)
 };

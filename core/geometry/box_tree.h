@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "geometry/bounds.h"
-#include "geometry/eight_extents.h"
+#include "geometry/eight_boxes.h"
 
 namespace cloth {
 

@@ -9,6 +9,7 @@
 
 #include "contact/close_pairs.h"
 #include "geometry/at.h"
+#include "kernels/worker_team.h"
 #include "scene/obstacle_shape.h"
 #include "support/contact_bodies.h"
 
@@ -259,6 +260,106 @@ TEST(NearPairs, DoNotDependOnWhatEarlierSearchesKept) {
     });
   }
   EXPECT_GT(compared, 10000u);
+}
+
+/// A few particles leave the regions that were kept, on a sheet that drifts and that several threads share;
+/// the numbers that stand for the regions change, and a mesh is moved now and then.
+TEST(NearPairs, DoNotDependOnWhatEarlierSearchesKeptWhereFewParticlesMove) {
+  Random random;
+  WorkerTeam team(3);
+  std::size_t compared = 0, of_mesh = 0;
+  for (int trial = 0; trial < 12; ++trial) {
+    SCOPED_TRACE(trial);
+    Intersection meeting;
+    meeting.sheet = random_sheet(15, 15, random);
+    const Sheet& sheet = meeting.sheet;
+    meeting.bodies = {random_body(&mesh_shape(), random), random_body(&mesh_shape(), random)};
+    for (const ObstacleBody& body : meeting.bodies) meeting.paths.emplace_back(body.pivot, Pose{}, Pose{});
+    constexpr double skin = 0.02;
+    PairSearch keeping(sheet.surface, sheet.position, meeting.bodies, true, skin), in_shares = keeping;
+    in_shares.set_team(&team);
+    Motion motion{sheet.position, sheet.position, 0.0005, 0.01, 0.01};
+    for (std::size_t i = 0; i < motion.to.size(); ++i) motion.to.add(i, 0.03 * trial * Vec3(-1, 1, -1));
+    for (int step = 0; step < 30; ++step) {
+      for (std::size_t i = 0; i < motion.to.size(); ++i) {
+        motion.to.add(i, {0.001, -0.002, 0.003});
+        if (random.integer(0, 9) == 0) motion.to.add(i, random.vector(step % 3 == 0 ? 0.02 : 0.001));
+      }
+      motion.from = motion.to;
+      if (step % 10 == 9) {
+        const Pose shifted = about(meeting.bodies[1].pivot, Eigen::Matrix3d::Identity(),
+                                   meeting.bodies[1].pivot + random.vector(0.1));
+        meeting.paths[1] = {meeting.bodies[1].pivot, shifted, shifted};
+      }
+      std::vector<FeaturePair> pairs, shared, fresh;
+      keeping.find(motion.swept(), meeting.paths, pairs);
+      in_shares.find(motion.swept(), meeting.paths, shared);
+      PairSearch(sheet.surface, sheet.position, meeting.bodies, true, skin)
+          .find(motion.swept(), meeting.paths, fresh);
+      ASSERT_EQ(pairs, fresh) << step;
+      ASSERT_EQ(shared, fresh) << step;
+      compared += pairs.size();
+      for (const FeaturePair& pair : pairs) of_mesh += pair.obstacle != FeaturePair::cloth_itself ? 1 : 0;
+    }
+  }
+  EXPECT_GT(compared, 20000u);
+  EXPECT_GT(of_mesh, 2000u);
+}
+
+/// Every sixth particle, of which the search's numbers are made, moves within its region; the others stay at
+/// the borders of theirs.
+TEST(NearPairs, DoNotDependOnTheNumbersOfEarlierSearches) {
+  Random random;
+  const Sheet sheet = random_sheet(14, 14, random);
+  std::size_t compared = 0;
+  for (int place = 0; place < 100; ++place) {
+    SweptBounds swept{.reach = 0.1, .own_reach = 0.1};
+    for (std::size_t i = 0; i < sheet.position.size(); ++i) {
+      const Vec3 at = sheet.position[i] + 0.01 * place * Vec3(1, 1, 1);
+      swept.particles.push_back({at, at, i % 6 == 0 ? 0.03 : 0.001});
+    }
+    PairSearch keeping(sheet.surface, sheet.position, {}, true, 0);
+    std::vector<FeaturePair> pairs, fresh;
+    keeping.find(swept, {}, pairs);
+    for (std::size_t i = 0; i < swept.particles.size(); i += 6) {
+      const Vec3 moved = swept.particles[i].from + Vec3::Constant(0.015);
+      swept.particles[i] = {moved, moved, 0.001};
+    }
+    keeping.find(swept, {}, pairs);
+    PairSearch(sheet.surface, sheet.position, {}, true, 0).find(swept, {}, fresh);
+    ASSERT_EQ(pairs, fresh) << place;
+    compared += pairs.size();
+  }
+  EXPECT_GT(compared, 10000u);
+}
+
+/// A particle that has flown off widens what the search counts in, but not for the others.
+TEST(NearPairs, OfTheOthersStayFewWhereAParticleIsFarAway) {
+  Random random;
+  const Sheet sheet = random_sheet(12, 12, random);
+  const std::vector<ObstacleBody> bodies{random_body(&mesh_shape(), random)};
+  const std::vector<PoseInterpolation> paths{{bodies[0].pivot, Pose{}, Pose{}}};
+  for (const double far : {1e2, 1e6, 1e12}) {
+    const auto of_others = [&](double apart) {
+      const std::size_t flown = 77;
+      Motion motion{sheet.position, sheet.position, 0.001, 0.002, 0.002};
+      motion.from.add(flown, Vec3(apart, -apart, 0));
+      motion.to = motion.from;
+      std::vector<FeaturePair> pairs;
+      PairSearch(sheet.surface, sheet.position, bodies, true, 0.02).find(motion.swept(), paths, pairs);
+      const auto has_flown = [&](const std::vector<int>& particles) {
+        return std::find(particles.begin(), particles.end(), static_cast<int>(flown)) != particles.end();
+      };
+      return std::count_if(pairs.begin(), pairs.end(), [&](const FeaturePair& pair) {
+        return !has_flown(near_particles(pair, sheet.surface)) &&
+               (pair.obstacle != FeaturePair::cloth_itself || !has_flown(far_particles(pair, sheet.surface)));
+      });
+    };
+    const auto together = of_others(0), apart = of_others(far);
+    EXPECT_GT(together, 100);
+    EXPECT_LE(apart, together + together / 10) << far;
+    EXPECT_GE(apart, together / 2) << far;
+  }
 }
 
 std::vector<Pose> poses_at_begin(const Intersection& meeting) {

@@ -20,7 +20,7 @@ class ParticleContact : public ContactStage {
     if (!contact_.is_inside(step.system, step.position_before)) {
       constrained.weight = step.stage_weight * step.times.step;
       constrained.position = state.position;
-      const LongStep long_step{constrained.weight, step.times.end, step.position_before,
+      const LongStep long_step{constrained.weight, step.times.end, step.position_before, state.velocity,
                                step.integrator.force_left(step.forces, step.times)};
       constrained.held = stiff_contact_.solve(step.system, step.forces, contact_.obstacles(), long_step,
                                               constrained.position);

@@ -119,7 +119,7 @@ void ContinuousContact::solve_long_step(const ContactStep& step, ClothState& sta
       std::max(arrived_length(), above_fall * gravity_ * step.times.step * step.times.step);
   if (StiffTarget::largest_violation(constraints_, target_position_) <= accepted) return;
   const LongStep whole{step.stage_weight * step.times.step, step.times.end, step.position_before,
-                       step.integrator.force_left(step.forces, step.times)};
+                       state.velocity, step.integrator.force_left(step.forces, step.times)};
   if (!stiff_target_.solve(step.system, step.forces, constraints_, whole, accepted, target_position_)) return;
   for (std::size_t i = 0; i < position_.size(); ++i)
     state.velocity.add(i, (target_position_[i] - state.position[i]) / whole.weight);

@@ -7,25 +7,27 @@ namespace cloth {
 void LongStepSolver::begin(ForceModel& forces, const LongStep& step, const Vec3Field& position) {
   integrated_position_ = position;
   forces.update(position, step.end);
-  integrated_force_ = forces.position_force();
+  forces.force(position, step.velocity, integrated_force_);
 }
 
 void LongStepSolver::find_residual(const ClothSystem& system, ForceModel& forces, const LongStep& step,
-                                   const Vec3Field& position, Vec3Field& residual) const {
+                                   const Vec3Field& position, Vec3Field& residual) {
+  residual = position;
+  add_scaled(-1, integrated_position_, residual);
+  velocity_ = step.velocity;
+  add_scaled(1 / step.weight, residual, velocity_);
   forces.update(position, step.end);
-  const Vec3Field& force = forces.position_force();
-  for (std::size_t i = 0; i < position.size(); ++i) {
-    const Vec3 moved = position[i] - integrated_position_[i];
+  forces.force(position, velocity_, force_);
+  for (std::size_t i = 0; i < position.size(); ++i)
     residual.set(i, system.pinned[i] ? Vec3::Zero()
-                                     : Vec3(system.mass[i] / (step.weight * step.weight) * moved -
-                                            (force[i] - integrated_force_[i])));
-  }
+                                     : Vec3(system.mass[i] / (step.weight * step.weight) * residual[i] -
+                                            (force_[i] - integrated_force_[i])));
   if (step.force) add_scaled(1, *step.force, residual);
 }
 
 Linearisation& LongStepSolver::linearise(const ClothSystem& system, ForceModel& forces, double weight,
                                          const Vec3Field& position) {
-  const LinearisationWeights weights{.position = weight * weight, .velocity = 0, .clamped = true};
+  const LinearisationWeights weights{.position = weight * weight, .velocity = weight, .clamped = true};
   method_ = choose_linear_method(system, weights).method;
   forces.linearise(position, weights, linearisation_);
   return linearisation_;

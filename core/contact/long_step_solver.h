@@ -1,11 +1,11 @@
 // What the two ways to solve a long step with contact share (contact/stiff_contact.h,
 // contact/stiff_target.h): what is left of its equation without contact,
 //
-//     g(x) = M (x - x*)/w^2 - (f(x) - f(x*)) + r
+//     g(x) = M (x - x*)/w^2 - (f(x, v) - f(x*, v*)) + r,    v = v* + (x - x*)/w
 //
-// and linear systems with A = M + w^2 K, K clamped to be positive semidefinite, and what constraints add to
-// the blocks of particles. They are solved by factors, conjugate gradients or multigrid, whichever is the
-// cheapest for the cloth.
+// and linear systems with A = M + w D + w^2 K, K clamped to be positive semidefinite, and what constraints
+// add to the blocks of particles. They are solved by factors, conjugate gradients or multigrid, whichever is
+// the cheapest for the cloth.
 #pragma once
 
 #include "forces/force_model.h"
@@ -20,6 +20,7 @@ struct LongStep {
   double weight = 0;                 ///< s, w
   double end = 0;                    ///< s, its time
   const Vec3Field& begin;            ///< m, the positions
+  const Vec3Field& velocity;         ///< m/s, v*, where the method ended
   const Vec3Field* force = nullptr;  ///< N, r; null: 0
 };
 
@@ -30,9 +31,10 @@ class LongStepSolver {
 
   /// g in N, 0 on pins. Updates the force model to the positions.
   void find_residual(const ClothSystem& system, ForceModel& forces, const LongStep& step,
-                     const Vec3Field& position, Vec3Field& residual) const;
+                     const Vec3Field& position, Vec3Field& residual);
 
-  const Vec3Field& integrated_force() const { return integrated_force_; }  ///< N, f(x*)
+  const Vec3Field& integrated_force() const { return integrated_force_; }  ///< N, f(x*, v*)
+  const Vec3Field& force() const { return force_; }                        ///< N, f of the last residual
 
   /// A at the positions, in kg, for constraints to be added to its blocks.
   Linearisation& linearise(const ClothSystem& system, ForceModel& forces, double weight,
@@ -44,6 +46,7 @@ class LongStepSolver {
 
  private:
   Vec3Field integrated_position_, integrated_force_;  ///< m, N
+  Vec3Field velocity_, force_;                        ///< m/s, N, of the last residual
   LinearMethod method_ = LinearMethod::cholesky;
   Linearisation linearisation_;
   CholeskyFactors factors_;

@@ -128,7 +128,7 @@ std::vector<HeldParticle> StiffContact::solve(const ClothSystem& system, ForceMo
     }
   }
   release();
-  const Vec3Field& force = forces.position_force();
+  const Vec3Field& force = solver_.force();
   for (HeldParticle& held : held_) {
     Vec3 load = solver_.integrated_force()[held.particle] - force[held.particle];
     if (step.force) load += (*step.force)[held.particle];

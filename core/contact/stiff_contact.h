@@ -5,17 +5,19 @@
 // A step of an implicit method ends at the minimum x* of |x - x~|^2_M / (2 w^2) + V(x), w the weight of the
 // force in the step. With x outside the obstacles, that function's gradient at x is
 //
-//     g(x) = M (x - x*)/w^2 - (f(x) - f(x*)) + r = sum of l n,    l >= 0, only where x is on a surface
+//     g(x) = M (x - x*)/w^2 - (f(x, v) - f(x*, v*)) + r = sum of l n,    l >= 0, only where x is on a surface
 //
-// r is its gradient at x*: 0 of methods that solve the step, and of those that take a number of iterations
-// what is left (Integrator::force_left()), so that a step with contact is solved. Were that left out, the
-// shape that contact leads to would be held by forces that nothing has, and gain energy by them.
+// so that the cloth around a contact deforms within the step, and l w is the normal impulse. Damping is part
+// of f, and v = v* + (x - x*)/w (LongStepSolver): were it left as it was at x*, the ledger would book losses
+// at velocities that no damper has slowed. r is the gradient at x*: 0 of methods that solve the step, and of
+// those that take a number of iterations what is left (Integrator::force_left()), so that a step with contact
+// is solved. Were that left out, the shape that contact leads to would be held by forces that nothing has,
+// and gain energy by them.
 //
-// so that the cloth around a contact deforms within the step, and l w is the normal impulse. Solved by
-// Newton's method with an active set: particles are constrained in the normal direction (as in Baraff and
-// Witkin 1998) while the normal component of g is positive. Until the solve ends a particle is kept outside
-// of the side that it met first, beyond its edges too: let go there, it may come back under the edge in the
-// next iteration, and so for ever. Friction acts on velocities afterwards.
+// Solved by Newton's method with an active set: particles are constrained in the normal direction (as in
+// Baraff and Witkin 1998) while the normal component of g is positive. Until the solve ends a particle is
+// kept outside of the side that it met first, beyond its edges too: let go there, it may come back under the
+// edge in the next iteration, and so for ever. Friction acts on velocities afterwards.
 #pragma once
 
 #include <optional>

@@ -3,11 +3,12 @@
 // have relaxed through obstacles within the step (as contact/stiff_contact.h says). Contact is then given the
 // positions x of the step with contact instead of x*, where the method ended,
 //
-//     M (x - x*)/w^2 - (f(x) - f(x*)) + r = sum of l a,    l >= 0, l = 0 where a . x > bound
+//     M (x - x*)/w^2 - (f(x, v) - f(x*, v*)) + r = sum of l a,    l >= 0, l = 0 where a . x > bound
 //
-// with w and r as in LongStep and a . x >= bound the constraints of near pairs. Newton's method with
-// augmented Lagrangian penalties for the loads l (Hestenes 1969, Powell 1969). In its matrix the penalty of a
-// constraint of several particles is bounded by one for each, so that it keeps its pattern.
+// with v = v* + (x - x*)/w, with w, v* and r as in LongStep, and with a . x >= bound the constraints of near
+// pairs. Newton's method with augmented Lagrangian penalties for the loads l (Hestenes 1969, Powell 1969). In
+// its matrix the penalty of a constraint of several particles is bounded by one for each, so that it keeps
+// its pattern.
 #pragma once
 
 #include <span>

@@ -155,4 +155,14 @@ Scene coarser(Scene scene, double part) {
   return scene;
 }
 
+Vec3Field force_after_step(ForceModel& forces, const ClothState& ended, double weight,
+                           const Vec3Field& position) {
+  Vec3Field velocity = ended.velocity, force(position.size());
+  for (std::size_t i = 0; i < position.size(); ++i)
+    velocity.add(i, (position[i] - ended.position[i]) / weight);
+  forces.update(position, weight);
+  forces.force(position, velocity, force);
+  return force;
+}
+
 }  // namespace cloth::test

@@ -78,4 +78,8 @@ Checkpoint state_before_touch(const Scene& scene, double lead);
 /// With a part of the particles along every edge, at least 3.
 Scene coarser(Scene scene, double part);
 
+/// N, of a step of `weight` seconds that ended in a state, where it is led to these positions, in m, instead.
+Vec3Field force_after_step(ForceModel& forces, const ClothState& ended, double weight,
+                           const Vec3Field& position);
+
 }  // namespace cloth::test

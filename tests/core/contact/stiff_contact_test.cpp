@@ -55,23 +55,23 @@ Solved solved(Scene scene, Integrator& method, double fall, double aside, double
   const StepTimes times{0, weight, weight};
   Work work;
   method.step(forces, times, state, work);
-  const Vec3Field target = state.position;
+  const Vec3Field target = state.position, velocity = state.velocity;
   const Vec3Field* left = method.force_left(forces, times);
 
   Vec3Field position = target;
   StiffContact contact;
-  const auto held =
-      contact.solve(system, forces, scene.obstacles, {weight, weight, begin.position, left}, position);
+  const auto held = contact.solve(system, forces, scene.obstacles,
+                                  {weight, weight, begin.position, velocity, left}, position);
 
-  forces.update(target, weight);
-  const Vec3Field force_before = forces.position_force();
-  forces.update(position, weight);
+  const ClothState led{target, velocity};
+  const Vec3Field force_before = force_after_step(forces, led, weight, target),
+                  force_after = force_after_step(forces, led, weight, position);
   Vec3Field rest(position.size());
   for (std::size_t i = 0; i < rest.size(); ++i)
     if (!system.pinned[i])
-      rest.set(i, left ? left_of_step(system, forces.position_force(), begin, position, i)
+      rest.set(i, left ? left_of_step(system, force_after, begin, position, i)
                        : Vec3(system.mass[i] / (weight * weight) * (position[i] - target[i]) -
-                              (forces.position_force()[i] - force_before[i])));
+                              (force_after[i] - force_before[i])));
   Solved result;
   double loads = 0, left_before = 0;
   for (std::size_t i = 0; i < rest.size(); ++i)

@@ -15,14 +15,17 @@ struct PointSpeeds {
   Vec3 before{0, 0, 0}, after{0, 0, 0}, gone{0, 0, 0};
 };
 
-/// J. The part of the impulse that changes the point's velocity acts instantaneously: its work is taken with
-/// the mean of the velocities before and after. The rest balances a load that acted during the whole step:
-/// its work is taken along the point's displacement. So a cloth at rest gets no work, whatever velocity the
-/// integrator gave it.
-inline double work_of(const ContactConstraint& contact, const PointSpeeds& speeds) {
+/// N s, the part of the normal impulse that changes the point's velocity, where no other contact does.
+inline double impact_of(const ContactConstraint& contact, const PointSpeeds& speeds) {
+  const double along = contact.normal.dot(speeds.after - speeds.before);
+  return std::clamp(along / contact.mobility, 0.0, contact.normal_impulse);
+}
+
+/// J. `impact` acts instantaneously: its work is taken with the mean of the velocities before and after. The
+/// rest of the normal impulse balances a load that acted during the whole step: its work is taken along the
+/// point's displacement. So a cloth at rest gets no work, whatever velocity the integrator gave it.
+inline double work_of(const ContactConstraint& contact, const PointSpeeds& speeds, double impact) {
   const Vec3 mean = 0.5 * (speeds.before + speeds.after), change = speeds.after - speeds.before;
-  const double along = contact.normal.dot(change);
-  const double impact = std::clamp(along / contact.mobility, 0.0, contact.normal_impulse);
   double work =
       impact * contact.normal.dot(mean) + (contact.normal_impulse - impact) * contact.normal.dot(speeds.gone);
 

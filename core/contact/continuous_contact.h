@@ -120,6 +120,7 @@ class ContinuousContact : public ContactStage {
   void solve_velocities(const ContactStep& step, ClothState& state, ContactReport& report);
   Vec3 total_impulse(const ClothSystem& system) const;
   void find_work(const ContactStep& step, const ClothState& state);
+  std::vector<double> impact_parts(const ContactStep& step, const ClothState& state) const;
   double recovering_work(const ContactStep& step) const;
   void find_start_change(const ContactStep& step);
   void add_half_steps_work(const ContactStep& step, const ClothState& state);

@@ -45,8 +45,9 @@ CLOTHLAB_INLINE double approach_of(const TouchLaw& law, const TouchBlock& block,
 
 /// J, of the impulse that stops a particle. The part that changes its velocity acts instantaneously: its work
 /// is taken with the mean of the velocities before and after. The rest balances a load that acted during the
-/// whole step: its work is taken along the displacement, of mean velocity `gone`. (The same for contacts of
-/// several particles: contact_work.h.)
+/// whole step: its work is taken along the displacement, of mean velocity `gone`. The load of springs that
+/// were solved for with contact, `normal_load`, acts while the particle touches, which does no work. (The
+/// same for contacts of several particles: contact_work.h.)
 CLOTHLAB_INLINE double stopping_work(double mass, double normal_load, const Vector& normal,
                                      const Vector& change, const Vector& before, const Vector& stopped,
                                      const Vector& gone) {
@@ -61,7 +62,8 @@ CLOTHLAB_INLINE double stopping_work(double mass, double normal_load, const Vect
   const double square = dot(turned, turned);
   const double part = slows & (square > 0) ? clamp(dot(rubbing, turned) / square, 0, mass) : 0;
   const Vector stopping = part * turned;
-  return impact * dot(normal, mean) + (impulse - impact) * dot(normal, gone) + dot(stopping, mean) +
+  const double load = most(0, impulse - normal_load - impact);
+  return impact * dot(normal, mean) + load * dot(normal, gone) + dot(stopping, mean) +
          dot(rubbing - stopping, gone);
 }
 

@@ -205,11 +205,40 @@ Vec3 ContinuousContact::total_impulse(const ClothSystem& system) const {
 
 /// For methods whose velocity is complete before contact acts.
 void ContinuousContact::find_work(const ContactStep& step, const ClothState& state) {
-  for (const ContactConstraint& contact : constraints_) {
-    const PointSpeeds speeds{contact.point(step.velocity_before), contact.point(state.velocity),
-                             contact.point(motion_)};
-    work_[at(contact.first_free(step.system.inverse_mass))] += work_of(contact, speeds);
+  const std::vector<double> parts = force_work_ ? impact_parts(step, state) : std::vector<double>();
+  for (std::size_t c = 0; c < constraints_.size(); ++c) {
+    const ContactConstraint& contact = constraints_[c];
+    PointSpeeds speeds{contact.point(step.velocity_before), contact.point(state.velocity),
+                       contact.point(motion_)};
+    double impact = impact_of(contact, speeds);
+    if (force_work_) {  // the load of springs acts while the two sides touch
+      impact = parts[c] * contact.normal_impulse;
+      speeds.gone += contact.normal.dot(contact.rest - speeds.gone) * contact.normal;
+    }
+    work_[at(contact.first_free(step.system.inverse_mass))] += work_of(contact, speeds, impact);
   }
+}
+
+/// Of the normal impulse of each contact, the part that changes velocities. Contacts that share a particle
+/// share the change of its velocity: each has of it as much as of the particle's normal impulses.
+std::vector<double> ContinuousContact::impact_parts(const ContactStep& step, const ClothState& state) const {
+  const ClothSystem& system = step.system;
+  std::vector<Vec3> given(position_.size(), Vec3::Zero());  // N s, along normals
+  for (const ContactConstraint& contact : constraints_)
+    for (std::size_t k = 0; k < at(contact.count); ++k)
+      given[at(contact.particle[k])] += contact.weight[k] * contact.normal_impulse * contact.normal;
+  std::vector<double> parts;
+  for (const ContactConstraint& contact : constraints_) {
+    double part = 0;  // the mean of its particles'
+    for (std::size_t k = 0; k < at(contact.count); ++k) {
+      const auto i = at(contact.particle[k]);
+      if (system.pinned[i] || !(given[i].squaredNorm() > 0)) continue;
+      const Vec3 change = state.velocity[i] - step.velocity_before[i];
+      part += contact.weight[k] * contact.weight[k] * change.dot(given[i]) / given[i].squaredNorm();
+    }
+    parts.push_back(std::clamp(part / contact.mobility, 0.0, 1.0));
+  }
+  return parts;
 }
 
 /// For Verlet's method: contact acts at the beginning of the step and at its end, each as half a kick of the

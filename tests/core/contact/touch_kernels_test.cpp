@@ -49,8 +49,11 @@ Answer answer_of(const TouchLaw& law, const TouchBlock& block, std::size_t k) {
   contact.normal = n, contact.mobility = 1 / mass;
   contact.normal_impulse = block.normal_load[k] + std::max(0.0, mass * change.dot(n));
   contact.friction_impulse = mass * (change - change.dot(n) * n);
-  const double work =
-      work_of(contact, {get(block.before, k), stopped, (get(block.point, k) - start) / law.step});
+  const PointSpeeds speeds{get(block.before, k), stopped, (get(block.point, k) - start) / law.step};
+  const double impact = impact_of(contact, speeds);
+  double work = work_of(contact, speeds, impact);
+  // the springs' load does no work
+  work -= std::min(block.normal_load[k], contact.normal_impulse - impact) * n.dot(speeds.gone);
   Vec3 answer = approach > 0 ? after_contact(law, v, n, approach, load) : stopped;
   const double square = 0.5 * mass * (answer - stopped).squaredNorm();
   if (square > 0)

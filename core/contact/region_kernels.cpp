@@ -5,22 +5,64 @@
 namespace cloth {
 namespace {
 
+using Half [[gnu::vector_size(16)]] = short;
+
+CLOTHLAB_INLINE Half all(int value) {
+  const auto v = static_cast<short>(value);
+  return Half{v, v, v, v, v, v, v, v};
+}
+
+// Ends of eight regions along an axis, as EightRegions has them; which of two are greater; and a bit for each
+// region of which an end is.
+
+#if defined(__AVX2__)
 using Ends [[gnu::vector_size(32)]] = short;
+using Greater = Ends;
+
+CLOTHLAB_INLINE Ends joined(const Half& first, const Half& second) {
+  return __builtin_shufflevector(first, second, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+}
+CLOTHLAB_INLINE Greater greater(const Ends& a, const Ends& b) {
+  return a > b;
+}
+CLOTHLAB_INLINE unsigned bits(const Greater& mask) {
+  const auto both = static_cast<unsigned>(__builtin_ia32_pmovmskb256(__builtin_ia32_packsswb256(mask, mask)));
+  return (both | both >> 16) & 255U;
+}
+#else
+struct Ends {
+  Half first, second;
+};
+using Greater = Half;
+
+CLOTHLAB_INLINE Ends joined(const Half& first, const Half& second) {
+  return {first, second};
+}
+CLOTHLAB_INLINE Greater greater(const Ends& a, const Ends& b) {
+  return (a.first > b.first) | (a.second > b.second);
+}
+CLOTHLAB_INLINE unsigned bits(const Greater& mask) {
+#if defined(__SSE2__)
+  return static_cast<unsigned>(__builtin_ia32_pmovmskb128(__builtin_ia32_packsswb128(mask, mask))) & 255U;
+#else
+  unsigned every = 0;
+  for (int k = 0; k < 8; ++k) every |= (mask[k] & 1U) << k;
+  return every;
+#endif
+}
+#endif
 
 /// One region eight times.
 class Same {
  public:
   CLOTHLAB_INLINE explicit Same(const CoarseRegion& region) {
-    for (int axis = 0; axis < axes; ++axis) {
-      const short low = region.lower[axis], high = static_cast<short>(-region.upper[axis]);
-      ends_[axis] =
-          Ends{low, low, low, low, low, low, low, low, high, high, high, high, high, high, high, high};
-    }
+    for (int axis = 0; axis < axes; ++axis)
+      ends_[axis] = joined(all(region.lower[axis]), all(-region.upper[axis]));
   }
 
   /// A bit for each of the others that overlaps or touches it along all axes.
   CLOTHLAB_INLINE unsigned overlapping(const EightRegions& others) const {
-    Ends outside = beyond(0, others);
+    Greater outside = beyond(0, others);
     for (int axis = 1; axis < axes; ++axis) outside |= beyond(axis, others);
     return ~bits(outside) & 255U;
   }
@@ -28,23 +70,10 @@ class Same {
  private:
   static constexpr int axes = region_axes;
 
-  CLOTHLAB_INLINE Ends beyond(int axis, const EightRegions& others) const {
+  CLOTHLAB_INLINE Greater beyond(int axis, const EightRegions& others) const {
     Ends end;
     __builtin_memcpy(&end, __builtin_assume_aligned(others.ends[axis], sizeof end), sizeof end);
-    return ends_[axis] > end;
-  }
-
-  /// Of those of both ends.
-  CLOTHLAB_INLINE static unsigned bits(const Ends& mask) {
-#if defined(__AVX2__)
-    const auto bytes = __builtin_ia32_packsswb256(mask, mask);
-    const auto all = static_cast<unsigned>(__builtin_ia32_pmovmskb256(bytes));
-    return all | all >> 16;
-#else
-    unsigned all = 0;
-    for (int k = 0; k < 8; ++k) all |= ((mask[k] | mask[k + 8]) & 1U) << k;
-    return all;
-#endif
+    return greater(ends_[axis], end);
   }
 
   Ends ends_[axes];

@@ -16,6 +16,7 @@ struct PointSpeeds {
 };
 
 /// N s, the part of the normal impulse that changes the point's velocity, where no other contact does.
+/// Precondition, as of work_of(): mobility > 0.
 inline double impact_of(const ContactConstraint& contact, const PointSpeeds& speeds) {
   const double along = contact.normal.dot(speeds.after - speeds.before);
   return std::clamp(along / contact.mobility, 0.0, contact.normal_impulse);
@@ -23,7 +24,8 @@ inline double impact_of(const ContactConstraint& contact, const PointSpeeds& spe
 
 /// J. `impact` acts instantaneously: its work is taken with the mean of the velocities before and after. The
 /// rest of the normal impulse balances a load that acted during the whole step: its work is taken along the
-/// point's displacement. So a cloth at rest gets no work, whatever velocity the integrator gave it.
+/// point's displacement. So a cloth at rest gets no work, whatever velocity the integrator gave it. Friction
+/// likewise, as if the contact were the only one of its particles.
 inline double work_of(const ContactConstraint& contact, const PointSpeeds& speeds, double impact) {
   const Vec3 mean = 0.5 * (speeds.before + speeds.after), change = speeds.after - speeds.before;
   double work =

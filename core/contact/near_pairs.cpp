@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdint>
 
 #include "contact/seen_boxes.h"
 #include "geometry/at.h"

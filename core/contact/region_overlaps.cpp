@@ -8,7 +8,6 @@
 #include <stdexcept>
 
 #include "contact/obstacle_body.h"
-#include "contact/regions.h"
 #include "geometry/at.h"
 #include "kernels/in_shares.h"
 #include "kernels/instruction_set.h"
@@ -55,6 +54,7 @@ CoarseNumbers numbers_for(std::span<const RoundedRegion> regions) {
   }
   const double unit = 2 * std::exp2(std::ceil(std::log2(spread)));
   for (int axis = 0; axis < 3; ++axis) middle[axis] = 2 * unit * std::round(middle[axis] / (2 * unit));
+  if (!middle.allFinite() || !std::isfinite(unit)) return {};  // beyond single precision
   return {middle, unit};
 }
 
@@ -100,16 +100,21 @@ RegionOverlaps::RegionOverlaps(const Surface& cloth, int obstacle, const Obstacl
     trees_[feature] = BoxTree(boxes[feature]);
     fill(regions_[feature], mesh.surface, feature, trees_[feature].order(), coarse);
   }
+  // Far from the origin rounding exceeds the room that the boxes of queries have.
+  for (std::size_t i = 0; i < vertices.size(); ++i) boxes[Feature::vertex][i] = vertices[i].box();
+  spread(mesh.surface, boxes);
+  for (const Feature feature : {Feature::vertex, Feature::edge, Feature::face})
+    trees_[feature].refit(boxes[feature]);
 }
 
 void RegionOverlaps::find(std::span<const RoundedRegion> particles, double skin, WorkerTeam* team,
                           std::vector<FeaturePair>& pairs) {
-  parts_.resize(static_cast<std::size_t>(number_of_shares(team, particles.size(), 1)));
+  parts_.resize(team ? at(team->size()) : 1);
   const CoarseNumbers numbers = is_own() ? numbers_for(particles) : numbers_;
   const bool are_first = kept_.size() != particles.size() || numbers != numbers_;
   numbers_ = numbers;
   if (are_first) kept_.clear();
-  if (!has_kept(particles, skin)) {
+  if (!keeps_regions(particles, skin)) {
     take_regions(kept_);
     is_own() ? find_own(team) : find_of_mesh(team);
   }
@@ -120,7 +125,7 @@ void RegionOverlaps::find(std::span<const RoundedRegion> particles, double skin,
 /// Whether all particles are in the regions for which the overlaps hold; else these are made anew, of a mesh
 /// for those particles that have left. Overlaps that are kept may be too many; the pairs are those whose
 /// regions of this search overlap.
-bool RegionOverlaps::has_kept(std::span<const RoundedRegion> particles, double skin) {
+bool RegionOverlaps::keeps_regions(std::span<const RoundedRegion> particles, double skin) {
   has_left_.assign(particles.size(), 1);
   bool has_any_left = kept_.empty();
   for (std::size_t i = 0; i < kept_.size(); ++i) {
@@ -222,7 +227,9 @@ void RegionOverlaps::find_of_mesh(WorkerTeam* team) {
                   return overlap.query >= static_cast<int>(query);
                 });
               };
-              auto next = first_of(before_.begin(), begin);
+              auto next = std::lower_bound(
+                  before_.begin(), before_.end(), static_cast<int>(begin),
+                  [](const RegionOverlap& overlap, int query) { return overlap.query < query; });
               const auto take_up_to = [&](std::size_t query) {
                 const auto stop = first_of(next, query);
                 overlaps.insert(overlaps.end(), next, stop);
@@ -232,14 +239,14 @@ void RegionOverlaps::find_of_mesh(WorkerTeam* team) {
                 if (!has_left(q)) continue;
                 take_up_to(q);
                 next = first_of(next, q + 1);
-                find_of_mesh(meeting, static_cast<int>(q), part, overlaps);
+                take_of_mesh(meeting, static_cast<int>(q), part, overlaps);
               }
               take_up_to(end);
             });
   }
 }
 
-void RegionOverlaps::find_of_mesh(const Meeting& meeting, int query, Part& part,
+void RegionOverlaps::take_of_mesh(const Meeting& meeting, int query, Part& part,
                                   std::vector<RegionOverlap>& overlaps) const {
   const CoarseRegion region = region_of(cloth_, meeting.near(), query, coarse_);
   part.around.clear();

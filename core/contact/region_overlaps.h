@@ -13,6 +13,7 @@
 #include "contact/feature_pairs.h"
 #include "contact/feature_regions.h"
 #include "contact/region_kernels.h"
+#include "contact/regions.h"
 #include "geometry/box_tree.h"
 
 namespace cloth {
@@ -22,7 +23,7 @@ class WorkerTeam;
 class RegionOverlaps {
  public:
   /// Of the cloth with itself, which starts there, in m. `cloth` must outlive this, as for the other
-  /// constructor. Both throw std::length_error for more than 134 million features of a kind.
+  /// constructor. Both throw std::length_error for more than 134 million features of a kind on the far side.
   RegionOverlaps(const Surface& cloth, const Vec3Field& start);
   /// With an obstacle's mesh, as the scene has it.
   RegionOverlaps(const Surface& cloth, int obstacle, const ObstacleBody& mesh);
@@ -59,7 +60,7 @@ class RegionOverlaps {
   };
 
   bool is_own() const { return obstacle_ == FeaturePair::cloth_itself; }
-  bool has_kept(std::span<const RoundedRegion> particles, double skin);
+  bool keeps_regions(std::span<const RoundedRegion> particles, double skin);
   void take_regions(std::span<const RoundedRegion> particles);
   void find_own(WorkerTeam* team);
   void find_own_of_eight(const Meeting& meeting, std::size_t first, Part& part,
@@ -67,7 +68,7 @@ class RegionOverlaps {
   void take_own(const Meeting& meeting, int query, const CoarseRegion& region, Part& part,
                 std::vector<RegionOverlap>& overlaps) const;
   void find_of_mesh(WorkerTeam* team);
-  void find_of_mesh(const Meeting& meeting, int query, Part& part,
+  void take_of_mesh(const Meeting& meeting, int query, Part& part,
                     std::vector<RegionOverlap>& overlaps) const;
   template <class CollectPart>
   void collect(std::size_t items, std::size_t least, Meeting& meeting, WorkerTeam* team,

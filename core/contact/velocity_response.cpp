@@ -210,11 +210,9 @@ void ContinuousContact::find_work(const ContactStep& step, const ClothState& sta
     const ContactConstraint& contact = constraints_[c];
     PointSpeeds speeds{contact.point(step.velocity_before), contact.point(state.velocity),
                        contact.point(motion_)};
-    double impact = impact_of(contact, speeds);
-    if (force_work_) {  // the load of springs acts while the two sides touch
-      impact = parts[c] * contact.normal_impulse;
+    const double impact = force_work_ ? parts[c] * contact.normal_impulse : impact_of(contact, speeds);
+    if (force_work_)  // the load of springs acts while the two sides touch
       speeds.gone += contact.normal.dot(contact.rest - speeds.gone) * contact.normal;
-    }
     work_[at(contact.first_free(step.system.inverse_mass))] += work_of(contact, speeds, impact);
   }
 }
@@ -232,11 +230,13 @@ std::vector<double> ContinuousContact::impact_parts(const ContactStep& step, con
     double part = 0;  // the mean of its particles'
     for (std::size_t k = 0; k < at(contact.count); ++k) {
       const auto i = at(contact.particle[k]);
-      if (system.pinned[i] || !(given[i].squaredNorm() > 0)) continue;
-      const Vec3 change = state.velocity[i] - step.velocity_before[i];
-      part += contact.weight[k] * contact.weight[k] * change.dot(given[i]) / given[i].squaredNorm();
+      const double square = given[i].squaredNorm();
+      if (system.pinned[i] || !(square > 0)) continue;
+      const double gained = system.mass[i] * (state.velocity[i] - step.velocity_before[i]).dot(given[i]);
+      part += contact.weight[k] * contact.weight[k] * system.inverse_mass[i] *
+              (gained < square ? std::max(gained, 0.0) / square : 1);
     }
-    parts.push_back(std::clamp(part / contact.mobility, 0.0, 1.0));
+    parts.push_back(part / contact.mobility);
   }
   return parts;
 }

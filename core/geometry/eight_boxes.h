@@ -25,7 +25,7 @@ struct alignas(64) EightBoxes {
       lower[axis][k] = box.lower[axis], upper[axis][k] = box.upper[axis];
   }
 
-  /// A bit for each that overlaps or touches this one.
+  /// A bit for each that overlaps or touches `box`.
   std::uint32_t overlapping(const RoundedBox& box) const {
 #if defined(__SSE2__)
     __m128 first = _mm_castsi128_ps(_mm_set1_epi32(-1)), second = first;

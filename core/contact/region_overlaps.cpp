@@ -118,6 +118,8 @@ void RegionOverlaps::find(std::span<const RoundedRegion> particles, double skin,
     take_regions(kept_);
     is_own() ? find_own(team) : find_of_mesh(team);
   }
+  if (std::all_of(meetings_.begin(), meetings_.end(), [](const Meeting& m) { return m.overlaps.empty(); }))
+    return;
   take_regions(particles);
   for (const Meeting& meeting : meetings_) take_near(meeting, team, pairs);
 }

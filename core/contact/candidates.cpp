@@ -6,9 +6,11 @@
 #include <span>
 #include <utility>
 
+#include "contact/motion_kernels.h"
 #include "contact/obstacle_body.h"
 #include "geometry/at.h"
 #include "kernels/in_shares.h"
+#include "kernels/instruction_set.h"
 
 namespace cloth {
 namespace {
@@ -26,22 +28,33 @@ void Candidates::collect(const PairQuery& now, const std::vector<double>& range,
   const double reach = std::max(now.swept.reach, now.swept.own_reach);
   position_ = now.position, poses_ = now.poses;
   around_.reach = now.swept.reach, around_.own_reach = now.swept.own_reach;
-  around_.particles.resize(range.size()), range_.resize(range.size());
+  around_.from = around_.to = position_;
+  around_.radius.resize(range.size()), range_.resize(range.size());
   for (std::size_t i = 0; i < range.size(); ++i) {
-    const Vec3 here = now.position[i];
-    const Capsule& capsule = now.swept.particles[i];
-    const double length = (capsule.to - capsule.from).norm();
+    const double length = range[i] - now.swept.radius[i];
     range_[i] = range[i] + std::min(ways_ahead * length, most_ahead * reach) + least_ahead * reach;
-    around_.particles[i] = {here, here, range_[i]};
+    around_.radius[i] = range_[i];
   }
   // All of a feature's points may move by the largest range of its particles.
   for (const auto& [a, b] : cloth_.edges)
     for (const auto& [i, beside] : {std::pair(at(a), at(b)), std::pair(at(b), at(a))})
-      around_.particles[i].radius = std::max(around_.particles[i].radius, range_[beside]);
+      around_.radius[i] = std::max(around_.radius[i], range_[beside]);
+  allow();
   search.find(around_, now.paths, pairs_);
   measure_rooms(now, team);
   drop_far();
   take_features();
+}
+
+/// Of displacements, for holds().
+void Candidates::allow() {
+  allowed_.clear();
+  for (const double range : range_) allowed_.push_back((1 - of_rounding) * range);
+  allowed_beside_.assign(range_.size(), Bounds::infinity);
+  for (const auto& [a, b] : cloth_.edges) {
+    const double either = std::max(allowed_[at(a)], allowed_[at(b)]);
+    for (const int i : {a, b}) allowed_beside_[at(i)] = std::min(allowed_beside_[at(i)], either);
+  }
 }
 
 void Candidates::take(std::vector<FeaturePair>& pairs) {
@@ -117,12 +130,15 @@ bool Candidates::holds(const PairQuery& now, const std::vector<double>& moved,
   if (around_.reach != now.swept.reach || around_.own_reach != now.swept.own_reach) return false;
   for (std::size_t k = 0; k < bodies_.size(); ++k)
     if (!same_place(bodies_[k], now.poses[k], poses_[k])) return false;
-  for (std::size_t i = 0; i < range.size(); ++i)
-    if (moved[i] + range[i] > (1 - of_rounding) * range_[i]) return false;
+  const double widest = range.empty() ? 0 : *std::max_element(range.begin(), range.end());
+  if (active_kernels<MotionKernels>().are_within(moved.data(), range.data(), widest, allowed_.data(),
+                                                 allowed_beside_.data(), static_cast<long>(range.size())))
+    return true;
+  for (std::size_t i = 0; i < range.size(); ++i)  // as exactly as that needs
+    if (moved[i] + range[i] > allowed_[i]) return false;
   return std::all_of(cloth_.edges.begin(), cloth_.edges.end(), [&](const std::array<int, 2>& edge) {
     const std::size_t a = at(edge[0]), b = at(edge[1]);
-    return std::max(moved[a] + range[b], moved[b] + range[a]) <=
-           (1 - of_rounding) * std::max(range_[a], range_[b]);
+    return std::max(moved[a] + range[b], moved[b] + range[a]) <= std::max(allowed_[a], allowed_[b]);
   });
 }
 

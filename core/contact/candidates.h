@@ -60,6 +60,7 @@ class Candidates {
   void spread(const std::vector<double>& of_particles, std::vector<double>& of_features) const;
 
  private:
+  void allow();
   void measure_rooms(const PairQuery& now, WorkerTeam* team);
   void drop_far();
   void take_features();
@@ -80,7 +81,8 @@ class Candidates {
 
   Vec3Field position_;
   std::vector<double> range_;  ///< m, displacement of each particle up to which the pairs are complete
-  SweptBounds around_;         ///< m, all of these displacements
+  std::vector<double> allowed_, allowed_beside_;  ///< m, of a particle, and of it or any one beside it
+  SweptBounds around_;                            ///< m, all of these displacements
   std::vector<Pose> poses_;
 };
 

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "contact/obstacle_body.h"
+#include "contact/particle_motion.h"
 #include "geometry/at.h"
 
 namespace cloth {
@@ -22,14 +23,9 @@ void ClosePairs::set_team(WorkerTeam* team) {
 }
 
 void ClosePairs::measure(const PairQuery& now) {
-  longest_ = 0;
-  range_.resize(now.swept.particles.size());
-  for (std::size_t i = 0; i < range_.size(); ++i) {
-    const Capsule& capsule = now.swept.particles[i];
-    const double length = (capsule.to - capsule.from).norm();
-    longest_ = std::max(longest_, length);
-    range_[i] = length + capsule.radius;
-  }
+  longest_ = find_distances(now.swept.from, now.swept.to, team_, length_);
+  range_.resize(length_.size());
+  for (std::size_t i = 0; i < range_.size(); ++i) range_[i] = length_[i] + now.swept.radius[i];
   obstacle_paths_.clear();
   for (std::size_t k = 0; k < bodies_.size(); ++k)
     obstacle_paths_.push_back(longest_path(bodies_[k], now.paths[k]));
@@ -39,12 +35,6 @@ bool ClosePairs::all_at_rest(const PairQuery& now) const {
   for (std::size_t k = 0; k < bodies_.size(); ++k)
     if (!same_place(bodies_[k], now.paths[k].from(), now.paths[k].to())) return false;
   return true;
-}
-
-void ClosePairs::measure_moved(const PairQuery& now) {
-  const Vec3Field& then = kept_.position();
-  moved_.resize(then.size());
-  for (std::size_t i = 0; i < moved_.size(); ++i) moved_[i] = (now.position[i] - then[i]).norm();
 }
 
 /// How far each feature may be at the end of this round from where it was when the candidates were found, and
@@ -86,7 +76,7 @@ ClosePairs::Role ClosePairs::role_of(const FeaturePair& pair, const Separation& 
   if (is_within || s.normal.isZero(0)) return role;
   Interval near, far{s.far_level, s.far_level};
   for (int j = 0; j < s.count; ++j)
-    (j < s.near_count ? near : far).add(along(s.normal, swept.particles[at(s.particle[at(j)])]));
+    (j < s.near_count ? near : far).add(along(s.normal, swept[at(s.particle[at(j)])]));
   if (pair.obstacle != FeaturePair::cloth_itself) far.high += obstacle_paths_[at(pair.obstacle)];
   return near.low > far.high + reach ? Role::none : role;
 }
@@ -156,7 +146,7 @@ void ClosePairs::find(const PairQuery& now, std::vector<FeaturePair>& pairs,
     found_.spread(range_, range_of_feature_);
     separate_all(now, found_, [](std::size_t) { return false; });
   } else {
-    measure_moved(now);
+    find_distances(kept_.position(), now.position, team_, moved_);
     if (!kept_.holds(now, moved_, range_)) {
       kept_.collect(now, range_, search_, team_);
       moved_.assign(range_.size(), 0);

@@ -69,7 +69,6 @@ class ClosePairs {
 
   void measure(const PairQuery& now);
   bool all_at_rest(const PairQuery& now) const;
-  void measure_moved(const PairQuery& now);
   bool add_spent();
   bool is_beyond(std::size_t kept) const;
   double motion_of(const FeaturePair& pair, const Candidates::Sides& sides) const;
@@ -86,6 +85,7 @@ class ClosePairs {
   BalancedShares shares_;
   std::vector<Part> parts_{1};  ///< of each thread
 
+  std::vector<double> length_;            ///< m, of each particle's displacement in this round
   std::vector<double> range_;             ///< m, bound of each particle's displacement in this round
   std::vector<double> range_of_feature_;  ///< m, of the features of the candidates
   std::vector<double> obstacle_paths_;    ///< m, of each: bound of its points' displacement in this substep

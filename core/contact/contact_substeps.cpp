@@ -1,9 +1,10 @@
 // How continuous contact moves cloth and obstacles through a step: substeps, and rounds within each of them.
 #include <algorithm>
-#include <cmath>
+#include <utility>
 
 #include "contact/continuous_contact.h"
 #include "contact/obstacle_body.h"
+#include "contact/particle_motion.h"
 
 namespace cloth {
 namespace {
@@ -19,11 +20,6 @@ constexpr double progress_part = 0.7;
 double max_operations(std::size_t particles) {
   constexpr double least = 1e7, for_a_particle = 2e3;
   return least + for_a_particle * static_cast<double>(particles);
-}
-
-bool all_finite(const Vec3Field& field) {
-  const auto values = field.flat();
-  return std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
 }
 
 }  // namespace
@@ -91,11 +87,10 @@ void ContinuousContact::begin_substep(std::int64_t substep, const Vec3Field& fro
 /// Whether anything is near enough in this step for contact to have work. A state that is not finite is left
 /// as it is: the run stops there.
 bool ContinuousContact::is_near(const ContactStep& step, const ClothState& state) {
-  if (!all_finite(state.position) || !all_finite(state.velocity)) return false;
+  if (!are_finite(state.position) || !are_finite(state.velocity)) return false;
   free_position_ = target_position_ = state.position;
   position_ = step.position_before;
   begin(step.times);
-  approach_position_ = state.position;
   return substeps_ == 1 ? find_pairs() : may_come_near();
 }
 
@@ -121,6 +116,7 @@ void ContinuousContact::solve_long_step(const ContactStep& step, ClothState& sta
   const LongStep whole{step.stage_weight * step.times.step, step.times.end, step.position_before,
                        state.velocity, step.integrator.force_left(step.forces, step.times)};
   if (!stiff_target_.solve(step.system, step.forces, constraints_, whole, accepted, target_position_)) return;
+  approach_position_ = state.position;
   for (std::size_t i = 0; i < position_.size(); ++i)
     state.velocity.add(i, (target_position_[i] - state.position[i]) / whole.weight);
   state.position = free_position_ = target_position_;
@@ -182,7 +178,7 @@ ContactReport ContinuousContact::resolve_near(const ContactStep& step, ClothStat
   report.acted = true;
   report.force_work = force_work_;
   report.pairs = pairs_.size() + waiting_.size();
-  integrated_position_ = state.position;
+  std::swap(integrated_position_, state.position);
   state.position = position_;
   take_loads(step, state);
   report.contacts = count_touched();
@@ -204,14 +200,14 @@ ContinuousContact::RoundsEnd ContinuousContact::go_rounds(const ClothSystem& sys
     is_separated_ = false;
     solve_target(system, from);
     keep_touches(step);
-    const Vec3Field before = position_;
+    if (part_ < 1) round_from_ = position_;
     const double left = move_cloth();
     has_moved_ = has_moved_ || left > 0;
     const bool is_exhausted = operation_count_ > max_operations(position_.size());
     if (part_ < 1) {
       const double advance = advance_obstacles();
       if (part_ < 1) free_position_ = target_position_, free_contains_contacts_ = true;
-      stuck = advance > 0 || furthest_move(before) > arrived ? 0 : stuck + 1;
+      stuck = advance > 0 || furthest_move(round_from_) > arrived ? 0 : stuck + 1;
       if (stuck > max_rounds_stuck) return RoundsEnd::pinched;
       if (part_ < 1 && is_exhausted) return RoundsEnd::exhausted;
     }

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "cloth/mesh_cloth.h"
+#include "contact/particle_motion.h"
 #include "contact/separations.h"
 #include "contact/stagger.h"
 #include "geometry/at.h"
@@ -127,17 +128,15 @@ void ContinuousContact::set_thickness(double time) {
 bool ContinuousContact::find_pairs() {
   const double least = margin_part * std::max(thickness_, self_thickness_);
   swept_.reach = thickness_, swept_.own_reach = self_thickness_;
-  swept_.particles.resize(position_.size());
-  bool are_whole = true;
-  for (std::size_t i = 0; i < position_.size(); ++i) {
-    const Vec3 here = position_[i];
-    const Vec3 step = target_position_[i] - here;
-    const double length = step.norm();
-    are_whole = are_whole && length <= longest_path_;
-    const Vec3 end =
-        length > longest_path_ ? Vec3(here + longest_path_ / length * step) : target_position_[i];
-    swept_.particles[i] = {here, end, radius_scale_[i] * std::max(least, aside_part * length)};
-  }
+  swept_.from = position_, swept_.to = target_position_;
+  swept_.radius.resize(position_.size());
+  const double longest = find_distances(position_, target_position_, team_, path_length_);
+  for (std::size_t i = 0; i < position_.size(); ++i)
+    swept_.radius[i] = radius_scale_[i] * std::max(least, aside_part * path_length_[i]);
+  const bool are_whole = longest <= longest_path_;
+  for (std::size_t i = 0; !are_whole && i < position_.size(); ++i)
+    if (path_length_[i] > longest_path_)
+      swept_.to.set(i, position_[i] + longest_path_ / path_length_[i] * (target_position_[i] - position_[i]));
   placed_.update(bodies_, poses_);
   close_pairs_.find({position_, swept_, paths_, poses_, &placed_}, pairs_, separations_, waiting_);
   memory_.clear();

@@ -122,6 +122,7 @@ class ContinuousContact : public ContactStage {
   void find_work(const ContactStep& step, const ClothState& state);
   std::vector<double> impact_parts(const ContactStep& step, const ClothState& state) const;
   double recovering_work(const ContactStep& step) const;
+  void find_changed(const ContactMemory& memory);
   void find_start_change(const ContactStep& step);
   void add_half_steps_work(const ContactStep& step, const ClothState& state);
   double deferred_by_load(const ClothSystem& system, std::size_t particle, const Vec3& stopped) const;
@@ -168,12 +169,14 @@ class ContinuousContact : public ContactStage {
   Vec3Field free_position_;        ///< m, target without contact in this round
   Vec3Field target_position_;      ///< m, target with contact
   Vec3Field position_;             ///< m, reached so far
+  Vec3Field round_from_;           ///< m, position_ as the round began
   Vec3Field integrated_position_;  ///< m, where the integrator put the particles, or those of StiffTarget
-  Vec3Field approach_position_;    ///< m, where the integrator put the particles
+  Vec3Field approach_position_;    ///< m, where the integrator put the particles before StiffTarget
   std::vector<double> fraction_;
   std::vector<double>
-      radius_scale_;   ///< of each capsule, larger each time that the capsule stopped its particle
-  SweptBounds swept_;  ///< particles stay in these until the next search for pairs
+      radius_scale_;  ///< of each capsule, larger each time that the capsule stopped its particle
+  std::vector<double> path_length_;  ///< m, of each particle's way to its target
+  SweptBounds swept_;                ///< particles stay in these until the next search for pairs
   std::vector<FeaturePair> pairs_;
   std::vector<WaitingPair> waiting_;
   std::vector<PairState> memory_;
@@ -191,12 +194,14 @@ class ContinuousContact : public ContactStage {
   bool free_contains_contacts_ = false;       ///< free_position_ contains contacts of earlier rounds
 
   // of the velocity solve
-  Vec3Field motion_;                   ///< m/s, mean of the step, without the recovery of too near pairs
-  Vec3Field start_change_;             ///< m/s, by contact at the beginning of the step
-  Vec3Field free_velocity_;            ///< m/s, before the velocity solve
-  std::vector<double> bounce_bound_;   ///< m/s, of each constraint, with restitution
-  std::vector<double> work_;           ///< J, of each particle
-  std::vector<std::uint8_t> bounced_;  ///< of each particle
+  Vec3Field motion_;                      ///< m/s, mean of the step, without the recovery of too near pairs
+  std::vector<std::size_t> changed_;      ///< see find_changed()
+  std::vector<std::uint8_t> is_changed_;  ///< scratch
+  Vec3Field start_change_;                ///< m/s, of these, by contact at the beginning of the step
+  Vec3Field free_velocity_;               ///< m/s, before the velocity solve
+  std::vector<double> bounce_bound_;      ///< m/s, of each constraint, with restitution
+  std::vector<double> work_;              ///< J, of each particle, 0 but of those in changed_
+  std::vector<std::uint8_t> bounced_;     ///< of each particle
   std::vector<double> deferred_of_bounced_;  ///< J, of each particle
 };
 

@@ -40,8 +40,9 @@ class PairSearch::Step {
   void find_own() {
     std::vector<RoundedRegion>& near = search_.near_;
     near.clear();
-    for (const Capsule& capsule : swept_.particles)
-      near.push_back(rounded({capsule.from, capsule.to, capsule.radius + 0.5 * swept_.own_reach}));
+    for (std::size_t i = 0; i < swept_.size(); ++i)
+      near.push_back(
+          rounded(Capsule{swept_.from[i], swept_.to[i], swept_.radius[i] + 0.5 * swept_.own_reach}));
     search_.own_->find(near, search_.skin_, search_.team_, pairs_);
   }
 
@@ -54,8 +55,8 @@ class PairSearch::Step {
       return boxes;
     }
     boxes.clear();
-    for (const Capsule& capsule : swept_.particles)
-      boxes.push_back(box_of(seen_at_rest(path, capsule, reach_)));
+    for (std::size_t i = 0; i < swept_.size(); ++i)
+      boxes.push_back(box_of(seen_at_rest(path, swept_[i], reach_)));
     return boxes;
   }
   void find_outcodes(const std::vector<Bounds>& particles, const Bounds& box) {
@@ -128,8 +129,8 @@ class PairSearch::Step {
     std::vector<RoundedRegion>& near = search_.near_;
     near.clear();
     if (path.is_still())
-      for (const Capsule& capsule : swept_.particles)
-        near.push_back(rounded(seen_at_rest(path, capsule, reach_)));
+      for (std::size_t i = 0; i < swept_.size(); ++i)
+        near.push_back(rounded(seen_at_rest(path, swept_[i], reach_)));
     else
       for (const Bounds& box : seen_boxes(body, path)) near.push_back(rounded(box));
     search_.meshes_[at(obstacle_)]->find(near, search_.skin_ / path.least_stretch(), search_.team_, pairs_);
@@ -158,7 +159,7 @@ void PairSearch::find(const SweptBounds& swept, const std::vector<PoseInterpolat
                       std::vector<FeaturePair>& pairs) {
   pairs.clear();
   particles_.clear();
-  for (const Capsule& capsule : swept.particles) particles_.push_back(box_of(capsule));
+  for (std::size_t i = 0; i < swept.size(); ++i) particles_.push_back(box_of(swept[i]));
   Step step(*this, swept, pairs);
   if (own_) step.find_own();
   for (std::size_t k = 0; k < bodies_.size(); ++k) step.find(static_cast<int>(k), paths[k]);

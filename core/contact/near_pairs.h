@@ -16,9 +16,21 @@ class WorkerTeam;
 
 /// Swept bounds of the particles, and the distances up to which pairs count.
 struct SweptBounds {
-  std::vector<Capsule> particles{};
-  double reach = 0;      ///< m, between cloth and obstacles
-  double own_reach = 0;  ///< m, of the cloth from itself
+  Vec3Field from{}, to{};        ///< m, of the particles' capsules
+  std::vector<double> radius{};  ///< m
+  double reach = 0;              ///< m, between cloth and obstacles
+  double own_reach = 0;          ///< m, of the cloth from itself
+
+  std::size_t size() const { return radius.size(); }
+  Capsule operator[](std::size_t i) const { return {from[i], to[i], radius[i]}; }
+  void resize(std::size_t particles) {
+    if (from.size() != particles) from = to = Vec3Field(particles);
+    radius.resize(particles);
+  }
+  void set(std::size_t i, const Capsule& capsule) {
+    from.set(i, capsule.from), to.set(i, capsule.to);
+    radius[i] = capsule.radius;
+  }
 };
 
 class PairSearch {

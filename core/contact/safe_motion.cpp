@@ -89,7 +89,8 @@ void ContinuousContact::bound_by_planes() {
 
 void ContinuousContact::bound_by_swept_volumes() {
   for (std::size_t i = 0; i < position_.size(); ++i) {
-    const double part = part_inside(swept_.particles[i], position_[i], target_position_[i]);
+    if (swept_.to[i] == target_position_[i]) continue;  // to the end of its capsule's axis
+    const double part = part_inside(swept_[i], position_[i], target_position_[i]);
     if (fraction_[i] <= part) continue;
     fraction_[i] = part;
     radius_scale_[i] = std::min(max_room, more_room * radius_scale_[i]);
@@ -104,6 +105,10 @@ double ContinuousContact::move_cloth() {
   bound_by_planes();
   bound_by_swept_volumes();
   double left = 0;
+  if (std::all_of(fraction_.begin(), fraction_.end(), [](double part) { return part == 1; })) {
+    position_ = target_position_;
+    return left;
+  }
   for (std::size_t i = 0; i < position_.size(); ++i) {
     if (fraction_[i] == 1) {
       position_.set(i, target_position_[i]);

@@ -96,7 +96,8 @@ std::vector<Problem> find_particles_inside(const Scene& scene, const ClothSystem
 void check_own_distance(const TriangleMesh& cloth, const Vec3Field& position, double thickness,
                         std::vector<Problem>& problems) {
   SweptBounds around{.own_reach = thickness};
-  for (const Vec3& vertex : cloth.vertices) around.particles.push_back({vertex, vertex, 0});
+  around.from = around.to = position;
+  around.radius.assign(position.size(), 0);
   const Surface surface = make_surface(static_cast<int>(cloth.vertices.size()), cloth.triangles);
   std::vector<FeaturePair> pairs;
   PairSearch(surface, position, {}, true, 0).find(around, {}, pairs);

@@ -6,6 +6,7 @@
 
 #include "contact/contact_work.h"
 #include "contact/continuous_contact.h"
+#include "contact/particle_motion.h"
 #include "geometry/at.h"
 
 namespace cloth {
@@ -69,9 +70,7 @@ void ContinuousContact::solve_constraints(const ClothSystem& system, int sweeps,
 /// not become velocity: there the motion is solved for again, keeping the distance at the beginning of the
 /// step. Returns whether there was such a pair.
 bool ContinuousContact::find_motion(const ContactStep& step) {
-  if (motion_.size() != position_.size()) motion_ = Vec3Field(position_.size());
-  for (std::size_t i = 0; i < position_.size(); ++i)
-    motion_.set(i, (position_[i] - step.position_before[i]) / step.times.step);
+  find_mean_velocity(step.position_before, position_, step.times.step, team_, motion_);
   const auto gap_of = [](const Touch& touch) {  // m, beyond the thickness as the step began
     return touch.contact.normal.dot(touch.contact.rest) - touch.contact.bound;
   };
@@ -88,9 +87,8 @@ bool ContinuousContact::find_motion(const ContactStep& step) {
     constraints_.push_back(touch.on_velocities(step.times.step));
     constraints_.back().bound -= std::max(gaps.back(), 0.0) / step.times.step;
   }
-  Vec3Field solved(position_.size());
-  for (std::size_t i = 0; i < position_.size(); ++i)
-    solved.set(i, (integrated_position_[i] - step.position_before[i]) / step.times.step);
+  Vec3Field solved;
+  find_mean_velocity(step.position_before, integrated_position_, step.times.step, team_, solved);
   apply_all_impulses(step.system, solved);
   solve_constraints(step.system, velocity_sweeps, solved);
   Islands islands(constraints_, step.system.inverse_mass);
@@ -115,13 +113,24 @@ double ContinuousContact::recovering_work(const ContactStep& step) const {
                 step.potential(led));
 }
 
+/// The particles that contact has moved or may change the velocity of, or whose energy it deferred,
+/// ascending.
+void ContinuousContact::find_changed(const ContactMemory& memory) {
+  is_changed_.assign(position_.size(), 0);
+  const auto take = [&](std::size_t i) { is_changed_[i] = 1; };
+  for (const ContactConstraint& contact : constraints_) contact.for_each(take);
+  visit_different(position_, integrated_position_, take);
+  visit_different(position_, target_position_, take);
+  changed_.clear();
+  for (std::size_t i = 0; i < is_changed_.size(); ++i)
+    if (is_changed_[i] != 0 || memory.deferred[i] != 0) changed_.push_back(i);
+}
+
 /// Contact's change of the velocity at the beginning of the step.
 void ContinuousContact::find_start_change(const ContactStep& step) {
   if (start_change_.size() != position_.size()) start_change_ = Vec3Field(position_.size());
-  const auto change = start_change_.flat();
-  const std::span<const double> motion = motion_.flat(), to = integrated_position_.flat(),
-                                from = step.position_before.flat();
-  for (std::size_t k = 0; k < change.size(); ++k) change[k] = motion[k] - (to[k] - from[k]) / step.times.step;
+  for (const std::size_t i : changed_)
+    start_change_.set(i, motion_[i] - (integrated_position_[i] - step.position_before[i]) / step.times.step);
 }
 
 /// m/s, relative normal velocity of a contact, negative where the two sides approach; 0 if that is no impact.
@@ -132,7 +141,8 @@ double ContinuousContact::approach_of(const Touch& touch, const ContactStep& ste
   const ContactConstraint& contact = touch.contact;
   const bool was_held = contact.any_of([&](std::size_t i) { return step.memory.held[i] != 0; });
   const double before = contact.normal.dot(contact.point(step.velocity_before) - touch.velocity);
-  const double mean = contact.normal.dot(contact.point(approach_position_) - contact.rest) / step.times.step;
+  const Vec3Field& integrated = force_work_ ? approach_position_ : integrated_position_;
+  const double mean = contact.normal.dot(contact.point(integrated) - contact.rest) / step.times.step;
   const double approach = was_held ? before : mean;
   const double least = std::max(2 * gravity_ * step.times.step, 4 * (before - mean));
   return approach < -least ? approach : 0;
@@ -176,6 +186,7 @@ void ContinuousContact::solve_velocities(const ContactStep& step, ClothState& st
                         state.velocity);
   }
   work_.assign(position_.size(), 0.0);
+  find_changed(step.memory);
   if (follows) find_start_change(step);
   if (follows)
     add_half_steps_work(step, state);
@@ -184,11 +195,11 @@ void ContinuousContact::solve_velocities(const ContactStep& step, ClothState& st
   bounce(step, follows, state);
   report.impulse = total_impulse(system);
   if (follows)
-    for (std::size_t i = 0; i < position_.size(); ++i)
+    for (const std::size_t i : changed_)
       if (!system.pinned[i]) report.impulse += system.mass[i] * start_change_[i];
   report.held_back = limit_held_back(step, state);
   remember(system, state, follows, step.memory);
-  for (const double work : work_) report.work += work;
+  for (const std::size_t i : changed_) report.work += work_[i];
 }
 
 /// N s.
@@ -247,7 +258,7 @@ std::vector<double> ContinuousContact::impact_parts(const ContactStep& step, con
 /// leapfrog closes. The energy m |l|^2/2 that c takes from the load's half kick l, and the next o returns, is
 /// deferred.
 void ContinuousContact::add_half_steps_work(const ContactStep& step, const ClothState& state) {
-  for (std::size_t i = 0; i < position_.size(); ++i) {
+  for (const std::size_t i : changed_) {
     if (step.system.pinned[i]) continue;
     const double mass = step.system.mass[i];
     const Vec3 opening = start_change_[i];
@@ -271,10 +282,10 @@ double ContinuousContact::deferred_by_load(const ClothSystem& system, std::size_
 /// Any combination of two solutions of the contacts is a solution too: bounds and friction cones are convex.
 void ContinuousContact::bounce(const ContactStep& step, bool follows, ClothState& state) {
   bounced_.assign(position_.size(), 0);
-  deferred_of_bounced_.assign(position_.size(), 0.0);
   bool any = false;
   for (std::size_t c = 0; c < constraints_.size(); ++c) any = any || bounce_bound_[c] > constraints_[c].bound;
   if (!any) return;
+  deferred_of_bounced_.assign(position_.size(), 0.0);
   const std::vector<ContactConstraint> still = constraints_;
   const Vec3Field stopped = state.velocity;
   for (std::size_t c = 0; c < constraints_.size(); ++c) constraints_[c].bound = bounce_bound_[c];
@@ -326,10 +337,11 @@ void ContinuousContact::bounce(const ContactStep& step, bool follows, ClothState
 
 void ContinuousContact::remember(const ClothSystem& system, const ClothState& state, bool follows,
                                  ContactMemory& memory) {
-  for (std::size_t i = 0; i < position_.size(); ++i) {
+  std::fill(memory.held.begin(), memory.held.end(), 0);
+  std::fill(memory.deferred.begin(), memory.deferred.end(), 0.0);
+  for (const std::size_t i : changed_) {
     const Vec3 impulse = state.velocity[i] - free_velocity_[i];
     memory.held[i] = !bounced_[i] && !impulse.isZero(0);
-    memory.deferred[i] = 0;
     if (follows && !system.pinned[i])
       memory.deferred[i] =
           bounced_[i] ? deferred_of_bounced_[i] : deferred_by_load(system, i, state.velocity[i]);
@@ -339,7 +351,7 @@ void ContinuousContact::remember(const ClothSystem& system, const ClothState& st
 
 int ContinuousContact::limit_held_back(const ContactStep& step, ClothState& state) {
   int held = 0;
-  for (std::size_t i = 0; i < position_.size(); ++i) {
+  for (const std::size_t i : changed_) {
     if ((target_position_[i] - position_[i]).norm() <= arrived_length()) continue;
     ++held;
     const Vec3 gone = (position_[i] - step.position_before[i]) / step.times.step, speed = state.velocity[i];

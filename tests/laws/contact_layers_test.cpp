@@ -59,7 +59,8 @@ Scene layers(int count, double thickness) {
 double least_own_distance(const Simulation& simulation, double within) {
   const Vec3Field& position = simulation.state().position;
   SweptBounds around{.own_reach = within};
-  for (std::size_t i = 0; i < position.size(); ++i) around.particles.push_back({position[i], position[i], 0});
+  around.from = around.to = position;
+  around.radius.assign(position.size(), 0);
   const Surface surface = make_surface(static_cast<int>(position.size()), simulation.cloth_mesh().triangles);
   std::vector<FeaturePair> pairs;
   PairSearch(surface, position, {}, true, 0).find(around, {}, pairs);

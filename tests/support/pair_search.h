@@ -20,7 +20,8 @@ struct Motion {
 
   SweptBounds swept() const {
     SweptBounds swept{.reach = reach, .own_reach = own_reach};
-    for (std::size_t i = 0; i < from.size(); ++i) swept.particles.push_back({from[i], to[i], margin});
+    swept.from = from, swept.to = to;
+    swept.radius.assign(from.size(), margin);
     return swept;
   }
   Vec3 at(int i, double part) const {

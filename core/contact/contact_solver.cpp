@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "kernels/in_shares.h"
+
 namespace cloth {
 namespace {
 
@@ -57,7 +59,9 @@ void ContactSolver::pack(std::span<const ContactConstraint> contacts,
 int ContactSolver::solve_again(std::span<ContactConstraint> contacts, const std::vector<double>& inverse_mass,
                                const SolveLimits& limits, Vec3Field& value) {
   assert(contacts.size() == is_chosen_.size());
-  for (const std::size_t c : alone_) relax_alone(contacts[c], inverse_mass, value);
+  in_shares(team_, alone_.size(), least_contacts, [&](int, std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) relax_alone(contacts[alone_[k]], inverse_mass, value);
+  });
   return batches_.is_empty() ? 1 : batches_.solve(contacts, limits, value);
 }
 

@@ -11,11 +11,19 @@
 
 namespace cloth {
 
+class WorkerTeam;
+
+/// Least number of contacts that is worth a thread of its own.
+inline constexpr std::size_t least_contacts = 256;
+
 /// Sweeps over the contacts, colour by colour. Contacts of the same particles hand an impulse to and
 /// fro for ever while nothing moves, so that a solve ends by what a whole sweep has changed at the particles
 /// and not by what single contacts have. A contact whose particles have no other is solved by one relaxation.
 class ContactSolver {
  public:
+  /// Null: one thread. Results do not depend on the team.
+  void set_team(WorkerTeam* team) { team_ = team; }
+
   /// In and out: `value` contains the effect of the contacts' impulses. Contacts without a free particle are
   /// skipped. Where contacts that were left out (SolveLimits::margin) are violated, they are added and the
   /// solve goes on, at last with all. Returns the sweeps of the last of these solves.
@@ -29,6 +37,7 @@ class ContactSolver {
  private:
   void pack(std::span<const ContactConstraint> contacts, const std::vector<double>& inverse_mass);
 
+  WorkerTeam* team_ = nullptr;
   std::vector<std::uint8_t> is_chosen_;  ///< of each contact
   std::vector<int> contacts_of_;         ///< of each particle, number of chosen contacts that move it
   std::vector<std::size_t> alone_;       ///< chosen contacts whose particles have no other

@@ -147,7 +147,7 @@ void ContinuousContact::take_loads(const ContactStep& step, ClothState& state) {
 
 ContactReport ContinuousContact::resolve(const ContactStep& step, ClothState& state) {
   team_ = job_.begin();
-  close_pairs_.set_team(team_);
+  close_pairs_.set_team(team_), solver_.set_team(team_);
   ContactReport report;
   if (is_near(step, state)) {
     if (long_steps_ && substeps_ == 1) solve_long_step(step, state);

@@ -98,6 +98,14 @@ class ContinuousContact : public ContactStage {
   void keep_touches(double step);
   double move_cloth();
   void bound_by_planes();
+  struct Approach {
+    double room = 0;                 ///< m, that the pair may take from its gap
+    double near = 0, far = 0;        ///< m, furthest of its sides towards the other
+    std::array<double, 4> ahead{};   ///< m, of its particles along the normal
+    double of_both() const { return near + far; }
+  };
+  Approach approach_within(std::size_t pair) const;
+  void bound_by_plane(std::size_t pair);
   void bound_by_swept_volumes();
   double advance_obstacles();
   double turn_limit(std::size_t obstacle) const;
@@ -123,6 +131,8 @@ class ContinuousContact : public ContactStage {
   std::vector<double> impact_parts(const ContactStep& step, const ClothState& state) const;
   double recovering_work(const ContactStep& step) const;
   void find_changed(const ContactMemory& memory);
+  template <class Visit>
+  void visit_changed(const Visit& visit) const;
   void find_start_change(const ContactStep& step);
   void add_half_steps_work(const ContactStep& step, const ClothState& state);
   double deferred_by_load(const ClothSystem& system, std::size_t particle, const Vec3& stopped) const;
@@ -173,6 +183,7 @@ class ContinuousContact : public ContactStage {
   Vec3Field integrated_position_;  ///< m, where the integrator put the particles, or those of StiffTarget
   Vec3Field approach_position_;    ///< m, where the integrator put the particles before StiffTarget
   std::vector<double> fraction_;
+  std::vector<std::uint8_t> is_bound_;  ///< of each pair, by its plane
   std::vector<double>
       radius_scale_;  ///< of each capsule, larger each time that the capsule stopped its particle
   std::vector<double> path_length_;  ///< m, of each particle's way to its target

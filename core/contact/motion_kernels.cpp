@@ -1,5 +1,7 @@
 #include "contact/motion_kernels.h"
 
+#include "kernels/kernel_loops.h"
+
 namespace cloth {
 namespace {
 
@@ -13,18 +15,12 @@ CLOTHLAB_INLINE Bits bits_of(double value) {
   return bits;
 }
 
-/// Of numbers that are at least 0, side by side: a compiler may not change the order in which a maximum of
-/// floating point numbers is found.
+/// Of numbers that are at least 0.
 double largest_of(const double* values, long count) {
-  constexpr long lanes = 8;
-  double most[lanes] = {};
-  long k = 0;
-  for (; k + lanes <= count; k += lanes)
-    for (long lane = 0; lane < lanes; ++lane)
-      most[lane] = values[k + lane] > most[lane] ? values[k + lane] : most[lane];
-  for (; k < count; ++k) most[0] = values[k] > most[0] ? values[k] : most[0];
-  for (long lane = 1; lane < lanes; ++lane) most[0] = most[lane] > most[0] ? most[lane] : most[0];
-  return most[0];
+  double part[8] = {}, most = 0;
+  kernels::in_parts<8>(count, [&](long k, int of) { part[of] = kernels::larger(values[k], part[of]); });
+  for (const double of : part) most = kernels::larger(of, most);
+  return most;
 }
 
 double find_lengths(Components from, Components to, long count, double* lengths) {
@@ -35,8 +31,7 @@ double find_lengths(Components from, Components to, long count, double* lengths)
       const double x = to.x[k] - from.x[k], y = to.y[k] - from.y[k], z = to.z[k] - from.z[k];
       lengths[k] = __builtin_sqrt(x * x + y * y + z * z);
     }
-    const double here = largest_of(lengths + begin, end - begin);
-    most = here > most ? here : most;
+    most = kernels::larger(largest_of(lengths + begin, end - begin), most);
   }
   return most;
 }

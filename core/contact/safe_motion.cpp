@@ -4,6 +4,7 @@
 
 #include "contact/continuous_contact.h"
 #include "geometry/at.h"
+#include "kernels/in_shares.h"
 
 namespace cloth {
 namespace {
@@ -56,34 +57,47 @@ double part_inside(const Capsule& capsule, const Vec3& start, const Vec3& end) {
 
 /// Bounds the fraction of its displacement that each particle can take without leaving its side of any plane.
 void ContinuousContact::bound_by_planes() {
-  for (std::size_t k = 0; k < pairs_.size(); ++k) {
-    const Separation& s = separations_[k];
-    const double room = s.gap() - kept_gap(s.gap(), memory_[k].thickness);
-    double near_step = 0, far_step = 0;  // m, towards each other
-    std::array<double, 4> ahead{};
-    for (int j = 0; j < s.count; ++j) {
-      const auto i = at(s.particle[at(j)]);
-      ahead[at(j)] = s.normal.dot(target_position_[i] - position_[i]);
-      if (j < s.near_count)
-        near_step = std::max(near_step, -ahead[at(j)]);
-      else
-        far_step = std::max(far_step, ahead[at(j)]);
+  is_bound_.resize(pairs_.size());
+  in_shares(team_, pairs_.size(), least_contacts, [&](int, std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      const double gap = separations_[k].gap();
+      const Approach approach = approach_within(k);
+      is_bound_[k] = gap > 0 && approach.of_both() <= approach.room ? 0 : 1;
     }
-    if (s.gap() > 0 && near_step + far_step <= room) continue;
-    const double near_room =
-        near_step + far_step > 0 ? std::max(room, 0.0) * near_step / (near_step + far_step) : 0;
-    for (int j = 0; j < s.count; ++j) {
-      const auto i = at(s.particle[at(j)]);
-      const bool is_near = j < s.near_count;
-      const double level = s.normal.dot(position_[i]);
-      const double slack =
-          is_near ? level - s.near_level + near_room : s.far_level - level + std::max(room, 0.0) - near_room;
-      const double step = is_near ? -ahead[at(j)] : ahead[at(j)];
-      if (s.gap() <= 0 && (step > 0 || !meets_solid(pairs_[k])))
-        fraction_[i] = 0;  // inside because of an edit: may only move out of a solid
-      else if (step > slack)
-        fraction_[i] = std::min(fraction_[i], std::max(slack, 0.0) / step);
-    }
+  });
+  for (std::size_t k = 0; k < pairs_.size(); ++k)
+    if (is_bound_[k] != 0) bound_by_plane(k);
+}
+
+ContinuousContact::Approach ContinuousContact::approach_within(std::size_t k) const {
+  const Separation& s = separations_[k];
+  Approach approach{.room = s.gap() - kept_gap(s.gap(), memory_[k].thickness)};
+  for (int j = 0; j < s.count; ++j) {
+    const auto i = at(s.particle[at(j)]);
+    const double ahead = approach.ahead[at(j)] = s.normal.dot(target_position_[i] - position_[i]);
+    if (j < s.near_count)
+      approach.near = std::max(approach.near, -ahead);
+    else
+      approach.far = std::max(approach.far, ahead);
+  }
+  return approach;
+}
+
+void ContinuousContact::bound_by_plane(std::size_t k) {
+  const Separation& s = separations_[k];
+  const Approach approach = approach_within(k);
+  const double room = std::max(approach.room, 0.0);
+  const double near_room = approach.of_both() > 0 ? room * approach.near / approach.of_both() : 0;
+  for (int j = 0; j < s.count; ++j) {
+    const auto i = at(s.particle[at(j)]);
+    const bool is_near = j < s.near_count;
+    const double level = s.normal.dot(position_[i]);
+    const double slack = is_near ? level - s.near_level + near_room : s.far_level - level + room - near_room;
+    const double step = is_near ? -approach.ahead[at(j)] : approach.ahead[at(j)];
+    if (s.gap() <= 0 && (step > 0 || !meets_solid(pairs_[k])))
+      fraction_[i] = 0;  // inside because of an edit: may only move out of a solid
+    else if (step > slack)
+      fraction_[i] = std::min(fraction_[i], std::max(slack, 0.0) / step);
   }
 }
 

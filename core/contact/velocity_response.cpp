@@ -8,6 +8,7 @@
 #include "contact/continuous_contact.h"
 #include "contact/particle_motion.h"
 #include "geometry/at.h"
+#include "kernels/in_shares.h"
 
 namespace cloth {
 namespace {
@@ -126,11 +127,21 @@ void ContinuousContact::find_changed(const ContactMemory& memory) {
     if (is_changed_[i] != 0 || memory.deferred[i] != 0) changed_.push_back(i);
 }
 
+/// visit(i) for each of the changed particles, in shares.
+template <class Visit>
+void ContinuousContact::visit_changed(const Visit& visit) const {
+  in_shares(team_, changed_.size(), least_contacts, [&](int, std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) visit(changed_[k]);
+  });
+}
+
 /// Contact's change of the velocity at the beginning of the step.
 void ContinuousContact::find_start_change(const ContactStep& step) {
   if (start_change_.size() != position_.size()) start_change_ = Vec3Field(position_.size());
-  for (const std::size_t i : changed_)
-    start_change_.set(i, motion_[i] - (integrated_position_[i] - step.position_before[i]) / step.times.step);
+  visit_changed([&](std::size_t i) {
+    start_change_.set(i,
+                      motion_[i] - (integrated_position_[i] - step.position_before[i]) / step.times.step);
+  });
 }
 
 /// m/s, relative normal velocity of a contact, negative where the two sides approach; 0 if that is no impact.
@@ -258,13 +269,13 @@ std::vector<double> ContinuousContact::impact_parts(const ContactStep& step, con
 /// leapfrog closes. The energy m |l|^2/2 that c takes from the load's half kick l, and the next o returns, is
 /// deferred.
 void ContinuousContact::add_half_steps_work(const ContactStep& step, const ClothState& state) {
-  for (const std::size_t i : changed_) {
-    if (step.system.pinned[i]) continue;
+  visit_changed([&](std::size_t i) {
+    if (step.system.pinned[i]) return;
     const double mass = step.system.mass[i];
     const Vec3 opening = start_change_[i];
     work_[i] = mass * opening.dot(step.velocity_before[i] + 0.5 * opening) +
                kinetic_change(mass, free_velocity_[i], state.velocity[i]) - step.memory.deferred[i];
-  }
+  });
 }
 
 /// J, of a particle: the energy that the next step returns, that of the half step's load; the energy of an
@@ -339,14 +350,14 @@ void ContinuousContact::remember(const ClothSystem& system, const ClothState& st
                                  ContactMemory& memory) {
   std::fill(memory.held.begin(), memory.held.end(), 0);
   std::fill(memory.deferred.begin(), memory.deferred.end(), 0.0);
-  for (const std::size_t i : changed_) {
+  visit_changed([&](std::size_t i) {
     const Vec3 impulse = state.velocity[i] - free_velocity_[i];
     memory.held[i] = !bounced_[i] && !impulse.isZero(0);
     if (follows && !system.pinned[i])
       memory.deferred[i] =
           bounced_[i] ? deferred_of_bounced_[i] : deferred_by_load(system, i, state.velocity[i]);
     work_[i] += memory.deferred[i];
-  }
+  });
 }
 
 int ContinuousContact::limit_held_back(const ContactStep& step, ClothState& state) {

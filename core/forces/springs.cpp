@@ -67,21 +67,15 @@ void damper_chunk(const SpringRun& run, int first, int count, const Vec3Field& p
   }
 }
 
-double run_energy(const SpringRun& run, const Vec3Field& position) {
+double run_energy(const SpringRun& run, const Vec3Field& position, const VectorKernels& kernels) {
   if (run.count == 1) {
     const auto i = static_cast<std::size_t>(run.first), j = static_cast<std::size_t>(run.first + run.offset);
     const double elongation = (position[j] - position[i]).norm() - run.rest_length;
     return 0.5 * run.stiffness * (elongation * elongation);
   }
-  const double *xi = position.x() + run.first, *yi = position.y() + run.first, *zi = position.z() + run.first;
-  const double *xj = xi + run.offset, *yj = yi + run.offset, *zj = zi + run.offset;
-  const double sum =
-      ordered_sum(static_cast<std::size_t>(run.count), [=, L = run.rest_length](std::size_t s) {
-        const double dx = xj[s] - xi[s], dy = yj[s] - yi[s], dz = zj[s] - zi[s];
-        const double elongation = std::sqrt(dx * dx + dy * dy + dz * dz) - L;
-        return elongation * elongation;
-      });
-  return 0.5 * run.stiffness * sum;
+  const ConstVectorRows ends{position.x() + run.first, position.y() + run.first, position.z() + run.first};
+  return 0.5 * run.stiffness *
+         kernels.squared_stretches(ends, run.offset, run.rest_length, static_cast<std::size_t>(run.count));
 }
 
 /// Sum of the squares of the rates (m/s) at which a run's springs stretch.
@@ -269,9 +263,10 @@ std::vector<StageInfo> explain_springs(const Scene& scene, const ClothSystem& sy
 }  // namespace
 
 std::array<double, 3> elastic_energy(const ClothSystem& system, const Vec3Field& position) {
+  const VectorKernels& kernels = active_kernels<VectorKernels>();
   std::array<double, 3> energy{};
   for (const SpringRun& run : system.springs)
-    energy[static_cast<std::size_t>(run.family)] += run_energy(run, position);
+    energy[static_cast<std::size_t>(run.family)] += run_energy(run, position, kernels);
   return energy;
 }
 

@@ -104,6 +104,17 @@ void scale_and_add(double scale, const double* __restrict from, double* __restri
   for (std::size_t k = 0; k < count; ++k) to[k] = scale * to[k] + from[k];
 }
 
+double squared_stretches(ConstVectorRows at, std::ptrdiff_t offset, double rest_length, std::size_t count) {
+  const double *jx = at.x + offset, *jy = at.y + offset, *jz = at.z + offset;
+  double sum[8] = {};
+  kernels::in_parts<8>(count, [&](std::size_t s, int part) {
+    const double dx = jx[s] - at.x[s], dy = jy[s] - at.y[s], dz = jz[s] - at.z[s];
+    const double stretch = __builtin_sqrt(dx * dx + dy * dy + dz * dz) - rest_length;
+    sum[part] += stretch * stretch;
+  });
+  return kernels::pairwise_sum(sum);
+}
+
 double dot(const double* a, const double* b, std::size_t count) {
   return kernels::dot_product(a, b, count);
 }
@@ -162,8 +173,8 @@ void add_triangles(TriangleRows triangles, double scale, const double* position,
 }
 
 constexpr VectorKernels table{
-    multiply_blocks, add_springs, add_spring_slopes, add_damper_turns, to_vectors, add_vectors, multiply_rows,
-    add_triangles,   dot,         add_multiple,      scale_and_add};
+    multiply_blocks, add_springs,   add_spring_slopes, add_damper_turns, to_vectors,   add_vectors,
+    multiply_rows,   add_triangles, squared_stretches, dot,              add_multiple, scale_and_add};
 
 }  // namespace
 

@@ -1,4 +1,4 @@
-// Products of block matrices and vectors, for iterative solvers. Sums are taken in the order of cloth/sums.h,
+// Products of block matrices and vectors, for iterative solvers, and sums over springs. Sums are taken in the order of cloth/sums.h,
 // without fused operations, so that every instruction set gives the same bits.
 #pragma once
 
@@ -80,6 +80,9 @@ struct VectorKernels {
   /// product += scale J^T K J d with J = dq/dx at `position`
   void (*add_triangles)(TriangleRows triangles, double scale, const double* position, const double* direction,
                         double* product);
+  /// sum (|x_(s + offset) - x_s| - rest_length)^2 over `count` springs
+  double (*squared_stretches)(ConstVectorRows position, std::ptrdiff_t offset, double rest_length,
+                              std::size_t count);
   double (*dot)(const double* a, const double* b, std::size_t count);
   /// to += scale from
   void (*add_multiple)(double scale, const double* from, double* to, std::size_t count);

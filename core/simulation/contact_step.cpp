@@ -10,9 +10,9 @@ std::optional<ContactReport> Simulation::contact_of(const StepTimes& times, cons
                                                     const Vec3Field& velocity_before) {
   if (contact_->is_continuous() && is_fast(kinetic_energy(system_, run_.state.velocity)) && has_diverged())
     return std::nullopt;
-  const auto potential = [&](const Vec3Field& position) {
-    ClothState there;
-    there.position = position, there.velocity = Vec3Field(position.size());
+  const auto potential = [this, there = ClothState{}](const Vec3Field& position) mutable {
+    if (there.velocity.size() != position.size()) there.velocity = Vec3Field(position.size());
+    there.position = position;
     return energy_of(there).total();
   };
   const double stage_weight = facts_of(scene_.integrator.method).stage_weight.value_or(1);

@@ -55,7 +55,7 @@ class ClosePairs {
   const PairSearch& search() const { return search_; }
 
  private:
-  struct Part {  ///< the result of one thread
+  struct alignas(64) Part {  ///< the result of one thread, in cache lines of its own
     std::vector<FeaturePair> pairs;
     std::vector<WaitingPair> waiting;
     std::vector<Separation> separations;

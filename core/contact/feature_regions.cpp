@@ -1,5 +1,9 @@
 #include "contact/feature_regions.h"
 
+#include <algorithm>
+
+#include "kernels/in_shares.h"
+
 namespace cloth {
 
 void spread(const Surface& surface, OfFeatures<std::vector<Bounds>>& boxes) {
@@ -21,11 +25,13 @@ CoarseRegion region_of(const Surface& surface, Feature feature, int index,
 }
 
 void fill(std::vector<EightRegions>& regions, const Surface& surface, Feature feature,
-          std::span<const int> order, std::span<const CoarseRegion> vertices) {
-  constexpr std::size_t eight = EightRegions::count;
+          std::span<const int> order, std::span<const CoarseRegion> vertices, WorkerTeam* team) {
+  constexpr std::size_t eight = EightRegions::count, least_eights = 32;
   regions.resize((order.size() + eight - 1) / eight);
-  for (std::size_t place = 0; place < order.size(); ++place)
-    regions[place / eight].set(place % eight, region_of(surface, feature, order[place], vertices));
+  in_shares(team, regions.size(), least_eights, [&](int, std::size_t begin, std::size_t end) {
+    for (std::size_t place = eight * begin; place < std::min(eight * end, order.size()); ++place)
+      regions[place / eight].set(place % eight, region_of(surface, feature, order[place], vertices));
+  });
 }
 
 PlacesAtVertices::PlacesAtVertices(std::size_t vertices, const Surface& surface, Feature feature,

@@ -14,6 +14,8 @@
 
 namespace cloth {
 
+class WorkerTeam;
+
 /// What a cloth and a mesh are made of.
 enum class Feature : std::uint8_t { vertex, edge, face };
 
@@ -43,9 +45,9 @@ void spread(const Surface& surface, OfFeatures<std::vector<Bounds>>& boxes);
 CoarseRegion region_of(const Surface& surface, Feature feature, int index,
                        std::span<const CoarseRegion> vertices);
 
-/// Those of features in the given order, eight by eight.
+/// Those of features in the given order, eight by eight. `team`: null is one thread.
 void fill(std::vector<EightRegions>& regions, const Surface& surface, Feature feature,
-          std::span<const int> order, std::span<const CoarseRegion> vertices);
+          std::span<const int> order, std::span<const CoarseRegion> vertices, WorkerTeam* team);
 
 /// Places, in an order of features, of those that have a vertex in common.
 class PlacesAtVertices {

@@ -98,7 +98,7 @@ RegionOverlaps::RegionOverlaps(const Surface& cloth, int obstacle, const Obstacl
   for (const Feature feature : {Feature::vertex, Feature::edge, Feature::face}) {
     expect_to_be_counted(boxes[feature].size());
     trees_[feature] = BoxTree(boxes[feature]);
-    fill(regions_[feature], mesh.surface, feature, trees_[feature].order(), coarse);
+    fill(regions_[feature], mesh.surface, feature, trees_[feature].order(), coarse, nullptr);
   }
   // Far from the origin rounding exceeds the room that the boxes of queries have.
   for (std::size_t i = 0; i < vertices.size(); ++i) boxes[Feature::vertex][i] = vertices[i].box();
@@ -115,12 +115,12 @@ void RegionOverlaps::find(std::span<const RoundedRegion> particles, double skin,
   numbers_ = numbers;
   if (are_first) kept_.clear();
   if (!keeps_regions(particles, skin)) {
-    take_regions(kept_);
+    take_regions(kept_, team);
     is_own() ? find_own(team) : find_of_mesh(team);
   }
   if (std::all_of(meetings_.begin(), meetings_.end(), [](const Meeting& m) { return m.overlaps.empty(); }))
     return;
-  take_regions(particles);
+  take_regions(particles, team);
   for (const Meeting& meeting : meetings_) take_near(meeting, team, pairs);
 }
 
@@ -140,12 +140,12 @@ bool RegionOverlaps::keeps_regions(std::span<const RoundedRegion> particles, dou
   return !has_any_left;
 }
 
-void RegionOverlaps::take_regions(std::span<const RoundedRegion> particles) {
+void RegionOverlaps::take_regions(std::span<const RoundedRegion> particles, WorkerTeam* team) {
   coarse_.clear();
   for (const RoundedRegion& region : particles) coarse_.push_back(numbers_.of(region));
   if (!is_own()) return;
   for (const Feature feature : {Feature::edge, Feature::face})
-    fill(regions_[feature], cloth_, feature, trees_[feature].order(), coarse_);
+    fill(regions_[feature], cloth_, feature, trees_[feature].order(), coarse_, team);
 }
 
 void RegionOverlaps::find_own(WorkerTeam* team) {
@@ -270,10 +270,10 @@ void RegionOverlaps::collect(std::size_t items, std::size_t least, Meeting& meet
                              const CollectPart& collect_part) {
   const int shares = in_shares(team, items, least, [&](int share, std::size_t begin, std::size_t end) {
     Part& part = parts_[at(share)];
-    std::vector<RegionOverlap>& overlaps = share == 0 ? meeting.overlaps : part.overlaps;
-    overlaps.clear();
-    collect_part(begin, end, part, overlaps);
+    part.overlaps.clear();
+    collect_part(begin, end, part, part.overlaps);
   });
+  meeting.overlaps.swap(parts_[0].overlaps);
   for (int share = 1; share < shares; ++share)
     meeting.overlaps.insert(meeting.overlaps.end(), parts_[at(share)].overlaps.begin(),
                             parts_[at(share)].overlaps.end());
@@ -293,7 +293,6 @@ void RegionOverlaps::take_near(const Meeting& meeting, WorkerTeam* team, std::ve
   const auto take = [&](int share, std::size_t begin, std::size_t end) {
     Part& part = parts_[at(share)];
     part.pairs.clear();
-    std::vector<FeaturePair>& taken = share == 0 ? pairs : part.pairs;
     for (std::size_t next = begin; begin < end; begin = next) {
       const int query = overlaps[begin].query;
       while (next < end && overlaps[next].query == query) ++next;
@@ -301,11 +300,11 @@ void RegionOverlaps::take_near(const Meeting& meeting, WorkerTeam* team, std::ve
       const int found = find(far.data(), overlaps.data() + begin, static_cast<int>(next - begin),
                              region_of(cloth_, meeting.near(), query, coarse_), part.places.data());
       for (int k = 0; k < found; ++k)
-        taken.push_back({obstacle_, meeting.kind, query, order[at(part.places[at(k)])]});
+        part.pairs.push_back({obstacle_, meeting.kind, query, order[at(part.places[at(k)])]});
     }
   };
   const int shares = in_shares(team, overlaps.size(), least_overlaps, take);
-  for (int share = 1; share < shares; ++share)
+  for (int share = 0; share < shares; ++share)
     pairs.insert(pairs.end(), parts_[at(share)].pairs.begin(), parts_[at(share)].pairs.end());
 }
 

@@ -52,7 +52,7 @@ class RegionOverlaps {
     Feature near() const;
     Feature far() const;
   };
-  struct Part {  ///< of one share
+  struct alignas(64) Part {  ///< of one share: what threads write lies in cache lines of their own
     std::vector<FeaturePair> pairs;
     std::vector<RegionOverlap> overlaps, around, left;
     std::vector<std::uint8_t> no_pairs;  ///< a bit for each place, 0 between two queries
@@ -61,7 +61,7 @@ class RegionOverlaps {
 
   bool is_own() const { return obstacle_ == FeaturePair::cloth_itself; }
   bool keeps_regions(std::span<const RoundedRegion> particles, double skin);
-  void take_regions(std::span<const RoundedRegion> particles);
+  void take_regions(std::span<const RoundedRegion> particles, WorkerTeam* team);
   void find_own(WorkerTeam* team);
   void find_own_of_eight(const Meeting& meeting, std::size_t first, Part& part,
                          std::vector<RegionOverlap>& overlaps) const;

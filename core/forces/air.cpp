@@ -78,8 +78,12 @@ class AirForce : public Force {
     const double *nx = normal_.x(), *ny = normal_.y(), *nz = normal_.z();
     double *fx = force.x(), *fy = force.y(), *fz = force.z();
     if (wind_.squaredNorm() > 0) {
+      const double* const mass = mass_->data();
+      const NodeCoefficient drag = drag_;
+      const double ux = wind_.x(), uy = wind_.y(), uz = wind_.z();
+#pragma GCC ivdep
       for (std::size_t i = 0; i < position.size(); ++i) {
-        const double push = drag(i) * (nx[i] * wind_.x() + ny[i] * wind_.y() + nz[i] * wind_.z());
+        const double push = drag.of(mass[i]) * (nx[i] * ux + ny[i] * uy + nz[i] * uz);
         fx[i] += push * nx[i], fy[i] += push * ny[i], fz[i] += push * nz[i];
       }
     }
@@ -89,8 +93,11 @@ class AirForce : public Force {
     const double *nx = normal_.x(), *ny = normal_.y(), *nz = normal_.z();
     const double *vx = velocity.x(), *vy = velocity.y(), *vz = velocity.z();
     double *px = product.x(), *py = product.y(), *pz = product.z();
+    const double* const mass = mass_->data();
+    const NodeCoefficient drag = drag_;
+#pragma GCC ivdep
     for (std::size_t i = 0; i < velocity.size(); ++i) {
-      const double along = drag(i) * (nx[i] * vx[i] + ny[i] * vy[i] + nz[i] * vz[i]);
+      const double along = drag.of(mass[i]) * (nx[i] * vx[i] + ny[i] * vy[i] + nz[i] * vz[i]);
       px[i] += along * nx[i], py[i] += along * ny[i], pz[i] += along * nz[i];
     }
   }
@@ -118,7 +125,9 @@ class AirForce : public Force {
     for (std::size_t i = 0; i < to.nodes.size(); ++i)
       to.nodes.add(i, block_along(0, weights.velocity * drag(i), normal_[i]));
   }
-  bool has_asymmetric_part() const override { return !holds_normals_ || brush_.has_value(); }
+  bool has_asymmetric_part() const override {
+    return !holds_normals_ || brush_.has_value();
+  }
   /// F = c_a (n . w) n with w = u - v: the normal turns with the positions, and a brush moves past them.
   void add_asymmetric_product(const ClothSystem& system, const Vec3Field& position, const Vec3Field& velocity,
                               const Vec3Field& direction, Vec3Field& product) const override {
@@ -149,7 +158,9 @@ class AirForce : public Force {
     }
   }
 
-  double drag(std::size_t i) const { return drag_.of((*mass_)[i]); }
+  double drag(std::size_t i) const {
+    return drag_.of((*mass_)[i]);
+  }
 
   Air air_;
   NodeCoefficient drag_;

@@ -17,7 +17,12 @@ class MassDamping : public Force {
     return KernelCoverage::every_pass;
   }
   void add_damping(const Vec3Field&, const Vec3Field& velocity, Vec3Field& product) const override {
-    for (std::size_t i = 0; i < velocity.size(); ++i) product.add(i, rate_ * (*mass_)[i] * velocity[i]);
+    const double rate = rate_;
+    const double *v[] = {velocity.x(), velocity.y(), velocity.z()}, *const mass = mass_->data();
+    double* p[] = {product.x(), product.y(), product.z()};
+    for (int axis = 0; axis < 3; ++axis)
+#pragma GCC ivdep
+      for (std::size_t i = 0; i < velocity.size(); ++i) p[axis][i] += rate * mass[i] * v[axis][i];
   }
   bool add_node_damping(NodeDamping& damping) const override {
     damping.isotropic.per_mass += rate_;

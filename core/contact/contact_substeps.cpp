@@ -88,8 +88,9 @@ void ContinuousContact::begin_substep(std::int64_t substep, const Vec3Field& fro
 /// as it is: the run stops there.
 bool ContinuousContact::is_near(const ContactStep& step, const ClothState& state) {
   if (!are_finite(state.position) || !are_finite(state.velocity)) return false;
-  free_position_ = target_position_ = state.position;
-  position_ = step.position_before;
+  copy(state.position, team_, free_position_);
+  copy(state.position, team_, target_position_);
+  copy(step.position_before, team_, position_);
   begin(step.times);
   return substeps_ == 1 ? find_pairs() : may_come_near();
 }
@@ -179,7 +180,7 @@ ContactReport ContinuousContact::resolve_near(const ContactStep& step, ClothStat
   report.force_work = force_work_;
   report.pairs = pairs_.size() + waiting_.size();
   std::swap(integrated_position_, state.position);
-  state.position = position_;
+  copy(position_, team_, state.position);
   take_loads(step, state);
   report.contacts = count_touched();
   solve_velocities(step, state, report);

@@ -128,7 +128,8 @@ void ContinuousContact::set_thickness(double time) {
 bool ContinuousContact::find_pairs() {
   const double least = margin_part * std::max(thickness_, self_thickness_);
   swept_.reach = thickness_, swept_.own_reach = self_thickness_;
-  swept_.from = position_, swept_.to = target_position_;
+  copy(position_, team_, swept_.from);
+  copy(target_position_, team_, swept_.to);
   swept_.radius.resize(position_.size());
   const double longest = find_distances(position_, target_position_, team_, path_length_);
   for (std::size_t i = 0; i < position_.size(); ++i)
@@ -237,7 +238,7 @@ void ContinuousContact::order_by_particles() {
 
 void ContinuousContact::solve_target(const ClothSystem& system, const Vec3Field& from) {
   constraint_pair_.clear();
-  target_position_ = free_position_;
+  copy(free_position_, team_, target_position_);
   for (std::size_t k = 0; k < pairs_.size(); ++k) {
     if (!is_contact(separations_[k], memory_[k].thickness)) {
       memory_[k].normal_impulse = 0, memory_[k].friction_impulse.setZero();
@@ -248,7 +249,8 @@ void ContinuousContact::solve_target(const ClothSystem& system, const Vec3Field&
   order_by_particles();
   constraints_.resize(constraint_pair_.size());
   in_shares(team_, constraints_.size(), least_contacts, [&](int, std::size_t begin, std::size_t end) {
-    for (std::size_t c = begin; c < end; ++c) constraints_[c] = constraint_of(constraint_pair_[c], system, from);
+    for (std::size_t c = begin; c < end; ++c)
+      constraints_[c] = constraint_of(constraint_pair_[c], system, from);
   });
   for (const ContactConstraint& contact : constraints_)
     apply_impulses(contact, system.inverse_mass, target_position_);

@@ -47,6 +47,15 @@ bool any_differs(const Vec3Field& a, const Vec3Field& b, std::size_t begin, std:
   return differ(a.x(), b.x()) || differ(a.y(), b.y()) || differ(a.z(), b.z());
 }
 
+void copy(const Vec3Field& from, WorkerTeam* team, Vec3Field& to) {
+  if (to.size() != from.size()) to = Vec3Field(from.size());
+  in_shares(team, from.size(), least_particles, [&](int, std::size_t begin, std::size_t end) {
+    std::copy(from.x() + begin, from.x() + end, to.x() + begin);
+    std::copy(from.y() + begin, from.y() + end, to.y() + begin);
+    std::copy(from.z() + begin, from.z() + end, to.z() + begin);
+  });
+}
+
 bool are_finite(const Vec3Field& field) {
   return active_kernels<MotionKernels>().are_finite(field.flat().data(),
                                                     static_cast<long>(field.flat().size()));

@@ -38,4 +38,7 @@ void visit_different(const Vec3Field& a, const Vec3Field& b, const Visit& visit)
 
 bool are_finite(const Vec3Field& field);
 
+/// to = from
+void copy(const Vec3Field& from, WorkerTeam* team, Vec3Field& to);
+
 }  // namespace cloth

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "contact/continuous_contact.h"
+#include "contact/particle_motion.h"
 #include "geometry/at.h"
 #include "kernels/in_shares.h"
 
@@ -120,7 +121,7 @@ double ContinuousContact::move_cloth() {
   bound_by_swept_volumes();
   double left = 0;
   if (std::all_of(fraction_.begin(), fraction_.end(), [](double part) { return part == 1; })) {
-    position_ = target_position_;
+    copy(target_position_, team_, position_);
     return left;
   }
   for (std::size_t i = 0; i < position_.size(); ++i) {

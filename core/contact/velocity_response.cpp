@@ -139,8 +139,7 @@ void ContinuousContact::visit_changed(const Visit& visit) const {
 void ContinuousContact::find_start_change(const ContactStep& step) {
   if (start_change_.size() != position_.size()) start_change_ = Vec3Field(position_.size());
   visit_changed([&](std::size_t i) {
-    start_change_.set(i,
-                      motion_[i] - (integrated_position_[i] - step.position_before[i]) / step.times.step);
+    start_change_.set(i, motion_[i] - (integrated_position_[i] - step.position_before[i]) / step.times.step);
   });
 }
 
@@ -185,13 +184,13 @@ void ContinuousContact::solve_velocities(const ContactStep& step, ClothState& st
     report.velocity_iterations =
         step.integrator.update_velocity_for_positions(step.forces, step.times, motion_, state);
   take_touches(step);
-  free_velocity_ = state.velocity;
+  copy(state.velocity, team_, free_velocity_);
   apply_all_impulses(system, state.velocity);
   const bool follows_damping = follows && step.forces.has_damping();
   solve_constraints(system, follows_damping ? first_velocity_sweeps : velocity_sweeps, state.velocity);
   if (follows_damping) {
     step.integrator.update_velocity_for_damping(step.forces, step.times, motion_, state);
-    free_velocity_ = state.velocity;
+    copy(state.velocity, team_, free_velocity_);
     apply_all_impulses(system, state.velocity);
     solver_.solve_again(constraints_, system.inverse_mass, {velocity_sweeps, velocity_tolerance},
                         state.velocity);

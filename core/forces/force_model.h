@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "forces/force.h"
+#include "kernels/shared_job.h"
 #include "kernels/spring_sweep.h"
 
 namespace cloth {
@@ -92,6 +93,9 @@ class ForceModel {
   void set_brush(const std::optional<BrushGust>& brush);
   void set_pull(const std::optional<Pull>& pull, double stiffness, double damping);
 
+  /// The threads that a solve for velocities shares its loops with, see shared_job.h.
+  SharedJob& solve_job() const { return solve_job_; }
+
   /// The kernels for this cloth; null where no kernel supports it.
   SpringSweep* sweep() const { return sweep_.get(); }
   /// The terms of this scene that those kernels compute. Precondition: sweep().
@@ -129,7 +133,8 @@ class ForceModel {
   std::vector<Force*> apart_;             ///< forces that the kernels' evaluations do not include
   std::vector<Force*> apart_from_steps_;  ///< forces that the kernels' whole steps do not include
   Vec3Field position_force_;              ///< sized when first needed
-  mutable Vec3Field product_;             ///< scratch, sized when first needed
+  mutable SharedJob solve_job_;
+  mutable Vec3Field product_;  ///< scratch, sized when first needed
   bool has_damping_ = false, has_power_ = false, has_damping_loss_ = false;
 };
 

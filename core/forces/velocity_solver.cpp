@@ -3,9 +3,11 @@
 #include "forces/velocity_solver.h"
 
 #include <algorithm>
+#include <numeric>
 
 #include "cloth/sums.h"
 #include "forces/node_matrix.h"
+#include "kernels/in_shares.h"
 
 namespace cloth {
 namespace {
@@ -55,8 +57,12 @@ void advance(double length, const Strip<const double>& d, const Strip<double>& v
 int VelocitySolver::solve(const ForceModel& forces, double weight, double tolerance,
                           const Vec3Field& position, Vec3Field& velocity, Vec3Field& force) {
   const NodeDamping local = forces.damping_parts();
-  if (forces.couples_particles())
-    return solve_coupled(forces, weight, tolerance, local, position, velocity, force);
+  if (forces.couples_particles()) {
+    team_ = forces.solve_job().begin();
+    const int iterations = solve_coupled(forces, weight, tolerance, local, position, velocity, force);
+    forces.solve_job().end();
+    return iterations;
+  }
   solve_by_particle(forces.system(), forces.position_force(), weight, local, velocity);
   return 0;
 }
@@ -83,6 +89,20 @@ void VelocitySolver::solve_by_particle(const ClothSystem& system, const Vec3Fiel
   }
 }
 
+template <class Visit>
+double VelocitySolver::sum_over_strips(std::size_t size, const Visit& visit) {
+  constexpr std::size_t least_strips = 8;
+  of_strips_.resize((size + particles_of_strip - 1) / particles_of_strip);
+  in_shares(team_, of_strips_.size(), least_strips, [&](int, std::size_t begin, std::size_t end) {
+    OwnStrip own;
+    for (std::size_t strip = begin; strip < end; ++strip) {
+      const std::size_t first = strip * particles_of_strip;
+      of_strips_[strip] = visit(first, std::min(particles_of_strip, size - first), own);
+    }
+  });
+  return std::accumulate(of_strips_.begin(), of_strips_.end(), 0.0);
+}
+
 /// `product` holds a force for the guess.
 int VelocitySolver::solve_coupled(const ForceModel& forces, double weight, double tolerance,
                                   const NodeDamping& local, const Vec3Field& position, Vec3Field& velocity,
@@ -91,29 +111,28 @@ int VelocitySolver::solve_coupled(const ForceModel& forces, double weight, doubl
   const std::size_t size = velocity.size();
   if (residual_.size() != size) residual_ = direction_ = Vec3Field(size);
   const NodeMatrix matrix(system, weight, local, inverse_diagonal_);
-  OwnStrip own;
 
-  double goal = 0;
-  for_each_strip(size, [&](std::size_t first, std::size_t count) {
+  double goal = sum_over_strips(size, [&](std::size_t first, std::size_t count, OwnStrip& own) {
     const Strip<double> v = strip_of(velocity, first, count), r = strip_of(residual_, first, count),
                         z = own.of(count);
     right_hand_side(system.mass.data() + first, weight, v, read_strip(forces.position_force(), first, count),
                     r);
     matrix.solve(first, r, z);
-    goal += dot(r, z);
     accelerate(weight, system.inverse_mass.data() + first, read_strip(product, first, count), v);
+    return dot(r, z);
   });
   goal *= tolerance * tolerance;
 
   forces.coupled_damping(position, velocity, product);
-  double slope = 0, curvature = 0;
-  for_each_strip(size, [&](std::size_t first, std::size_t count) {
+  double slope = sum_over_strips(size, [&](std::size_t first, std::size_t count, OwnStrip&) {
     const Strip<double> r = strip_of(residual_, first, count), d = strip_of(direction_, first, count);
     matrix.subtract_product(first, 1, weight, read_strip(velocity, first, count),
                             read_strip(product, first, count), r);
     matrix.solve(first, r, d);
-    slope += dot(r, d);
-    curvature += matrix.square(first, d);
+    return dot(r, d);
+  });
+  double curvature = sum_over_strips(size, [&](std::size_t first, std::size_t count, OwnStrip&) {
+    return matrix.square(first, strip_of(direction_, first, count));
   });
 
   int iterations = 0;
@@ -121,22 +140,20 @@ int VelocitySolver::solve_coupled(const ForceModel& forces, double weight, doubl
     curvature += weight * forces.coupled_damping(position, direction_, product);
     if (!(curvature > 0)) break;
     const double length = slope / curvature;
-    double next_slope = 0;
-    for_each_strip(size, [&](std::size_t first, std::size_t count) {
+    const double next_slope = sum_over_strips(size, [&](std::size_t first, std::size_t count, OwnStrip& own) {
       const Strip<double> r = strip_of(residual_, first, count), z = own.of(count);
       const auto d = read_strip(direction_, first, count);
       advance(length, d, strip_of(velocity, first, count));
       matrix.subtract_product(first, length, weight, d, read_strip(product, first, count), r);
       matrix.solve(first, r, z);
-      next_slope += dot(r, z);
+      return dot(r, z);
     });
     const double keep = next_slope / slope;
-    curvature = 0;
-    for_each_strip(size, [&](std::size_t first, std::size_t count) {
+    curvature = sum_over_strips(size, [&](std::size_t first, std::size_t count, OwnStrip& own) {
       const Strip<double> d = strip_of(direction_, first, count), z = own.of(count);
       matrix.solve(first, read_strip(residual_, first, count), z);
       turn(keep, z, d);
-      curvature += matrix.square(first, d);
+      return matrix.square(first, d);
     });
     slope = next_slope;
     ++iterations;

@@ -28,9 +28,14 @@ class VelocitySolver {
  private:
   void solve_by_particle(const ClothSystem& system, const Vec3Field& position_force, double weight,
                          const NodeDamping& damping, Vec3Field& velocity);
+  /// sum of visit(first, count, own) over all strips, in their order; `own` is scratch.
+  template <class Visit>
+  double sum_over_strips(std::size_t size, const Visit& visit);
   int solve_coupled(const ForceModel& forces, double weight, double tolerance, const NodeDamping& local,
                     const Vec3Field& position, Vec3Field& velocity, Vec3Field& product);
 
+  WorkerTeam* team_ = nullptr;            ///< of this solve
+  std::vector<double> of_strips_;         ///< scratch
   std::vector<double> inverse_diagonal_;  ///< 1/kg, scratch
   Vec3Field residual_, direction_;        ///< scratch, sized when first needed
 };

@@ -349,13 +349,15 @@ void Simulation::set_threads(int threads, ThreadUse use) {
 }
 
 /// Among the threads of the team, if there is one. Continuous contact goes through all particles between two
-/// passes, mostly on one thread, and has to fetch what other cores wrote: for a small cloth that costs more than
-/// sharing the pass saves.
+/// passes, mostly on one thread, and has to fetch what other cores wrote: for a small cloth that costs more
+/// than sharing the pass saves.
 void Simulation::share_work() {
   constexpr int small = 4000;  // particles
-  const bool keeps_one_thread = contact_ && contact_->is_continuous() && thread_use_ == ThreadUse::where_they_gain &&
-                       system_.size() < small;
-  if (forces_->sweep()) forces_->sweep()->set_team(keeps_one_thread ? nullptr : team_.get(), thread_use_);
+  const bool keeps_one_thread = contact_ && contact_->is_continuous() &&
+                                thread_use_ == ThreadUse::where_they_gain && system_.size() < small;
+  WorkerTeam* const of_forces = keeps_one_thread ? nullptr : team_.get();
+  if (forces_->sweep()) forces_->sweep()->set_team(of_forces, thread_use_);
+  forces_->solve_job().set_team(of_forces, thread_use_);
   if (contact_) contact_->set_team(team_.get(), thread_use_);
 }
 

@@ -247,11 +247,8 @@ void ContinuousContact::solve_target(const ClothSystem& system, const Vec3Field&
     constraint_pair_.push_back(k);
   }
   order_by_particles();
-  constraints_.resize(constraint_pair_.size());
-  in_shares(team_, constraints_.size(), least_contacts, [&](int, std::size_t begin, std::size_t end) {
-    for (std::size_t c = begin; c < end; ++c)
-      constraints_[c] = constraint_of(constraint_pair_[c], system, from);
-  });
+  fill_in_shares(team_, constraint_pair_.size(), least_contacts, constraints_,
+                 [&](std::size_t c) { return constraint_of(constraint_pair_[c], system, from); });
   for (const ContactConstraint& contact : constraints_)
     apply_impulses(contact, system.inverse_mass, target_position_);
   double last_missing = infinity;

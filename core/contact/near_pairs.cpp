@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <array>
 
+#include "contact/particle_motion.h"
 #include "contact/seen_boxes.h"
 #include "geometry/at.h"
+#include "kernels/in_shares.h"
 
 namespace cloth {
 
@@ -38,15 +40,17 @@ class PairSearch::Step {
 
   /// Pairs of the cloth itself, each side grown by half the reach.
   void find_own() {
-    std::vector<RoundedRegion>& near = search_.near_;
-    near.clear();
-    for (std::size_t i = 0; i < swept_.size(); ++i)
-      near.push_back(
-          rounded(Capsule{swept_.from[i], swept_.to[i], swept_.radius[i] + 0.5 * swept_.own_reach}));
-    search_.own_->find(near, search_.skin_, search_.team_, pairs_);
+    of_particles(search_.near_, [&](std::size_t i) {
+      return rounded(Capsule{swept_.from[i], swept_.to[i], swept_.radius[i] + 0.5 * swept_.own_reach});
+    });
+    search_.own_->find(search_.near_, search_.skin_, search_.team_, pairs_);
   }
 
  private:
+  template <class T, class Value>
+  void of_particles(std::vector<T>& values, const Value& value) {
+    fill_in_shares(search_.team_, swept_.size(), least_particles, values, value);
+  }
   /// Boxes of the particles in the coordinates of an obstacle, for its whole path, grown by the reach.
   const std::vector<Bounds>& seen_boxes(const ObstacleBody& body, const PoseInterpolation& path) {
     std::vector<Bounds>& boxes = search_.seen_;
@@ -54,9 +58,7 @@ class PairSearch::Step {
       seen_from_body(body, path, particles_, reach_, boxes);
       return boxes;
     }
-    boxes.clear();
-    for (std::size_t i = 0; i < swept_.size(); ++i)
-      boxes.push_back(box_of(seen_at_rest(path, swept_[i], reach_)));
+    of_particles(boxes, [&](std::size_t i) { return box_of(seen_at_rest(path, swept_[i], reach_)); });
     return boxes;
   }
   void find_outcodes(const std::vector<Bounds>& particles, const Bounds& box) {
@@ -126,14 +128,15 @@ class PairSearch::Step {
   }
 
   void find_mesh(const ObstacleBody& body, const PoseInterpolation& path) {
-    std::vector<RoundedRegion>& near = search_.near_;
-    near.clear();
-    if (path.is_still())
-      for (std::size_t i = 0; i < swept_.size(); ++i)
-        near.push_back(rounded(seen_at_rest(path, swept_[i], reach_)));
-    else
-      for (const Bounds& box : seen_boxes(body, path)) near.push_back(rounded(box));
-    search_.meshes_[at(obstacle_)]->find(near, search_.skin_ / path.least_stretch(), search_.team_, pairs_);
+    if (path.is_still()) {
+      of_particles(search_.near_,
+                   [&](std::size_t i) { return rounded(seen_at_rest(path, swept_[i], reach_)); });
+    } else {
+      const std::vector<Bounds>& boxes = seen_boxes(body, path);
+      of_particles(search_.near_, [&](std::size_t i) { return rounded(boxes[i]); });
+    }
+    search_.meshes_[at(obstacle_)]->find(search_.near_, search_.skin_ / path.least_stretch(), search_.team_,
+                                         pairs_);
   }
 
   PairSearch& search_;
@@ -158,8 +161,8 @@ PairSearch::PairSearch(const Surface& cloth, const Vec3Field& start, const std::
 void PairSearch::find(const SweptBounds& swept, const std::vector<PoseInterpolation>& paths,
                       std::vector<FeaturePair>& pairs) {
   pairs.clear();
-  particles_.clear();
-  for (std::size_t i = 0; i < swept.size(); ++i) particles_.push_back(box_of(swept[i]));
+  fill_in_shares(team_, swept.size(), least_particles, particles_,
+                 [&](std::size_t i) { return box_of(swept[i]); });
   Step step(*this, swept, pairs);
   if (own_) step.find_own();
   for (std::size_t k = 0; k < bodies_.size(); ++k) step.find(static_cast<int>(k), paths[k]);

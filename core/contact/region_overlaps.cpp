@@ -141,8 +141,9 @@ bool RegionOverlaps::keeps_regions(std::span<const RoundedRegion> particles, dou
 }
 
 void RegionOverlaps::take_regions(std::span<const RoundedRegion> particles, WorkerTeam* team) {
-  coarse_.clear();
-  for (const RoundedRegion& region : particles) coarse_.push_back(numbers_.of(region));
+  constexpr std::size_t least = 512;
+  fill_in_shares(team, particles.size(), least, coarse_,
+                 [&](std::size_t i) { return numbers_.of(particles[i]); });
   if (!is_own()) return;
   for (const Feature feature : {Feature::edge, Feature::face})
     fill(regions_[feature], cloth_, feature, trees_[feature].order(), coarse_, team);

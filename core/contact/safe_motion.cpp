@@ -58,13 +58,9 @@ double part_inside(const Capsule& capsule, const Vec3& start, const Vec3& end) {
 
 /// Bounds the fraction of its displacement that each particle can take without leaving its side of any plane.
 void ContinuousContact::bound_by_planes() {
-  is_bound_.resize(pairs_.size());
-  in_shares(team_, pairs_.size(), least_contacts, [&](int, std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) {
-      const double gap = separations_[k].gap();
-      const Approach approach = approach_within(k);
-      is_bound_[k] = gap > 0 && approach.of_both() <= approach.room ? 0 : 1;
-    }
+  fill_in_shares(team_, pairs_.size(), least_contacts, is_bound_, [&](std::size_t k) -> std::uint8_t {
+    const Approach approach = approach_within(k);
+    return separations_[k].gap() > 0 && approach.of_both() <= approach.room ? 0 : 1;
   });
   for (std::size_t k = 0; k < pairs_.size(); ++k)
     if (is_bound_[k] != 0) bound_by_plane(k);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <vector>
 
 #include "kernels/worker_team.h"
 
@@ -29,6 +30,16 @@ int in_shares(WorkerTeam* team, std::size_t count, std::size_t least, const Job&
   else
     team->run(static_cast<int>(shares), share_of);
   return static_cast<int>(shares);
+}
+
+/// values[k] = value(k) for k in [0, count), in such shares.
+template <class T, class Value>
+void fill_in_shares(WorkerTeam* team, std::size_t count, std::size_t least, std::vector<T>& values,
+                    const Value& value) {
+  values.resize(count);
+  in_shares(team, count, least, [&](int, std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) values[k] = value(k);
+  });
 }
 
 }  // namespace cloth

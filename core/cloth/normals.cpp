@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "kernels/in_shares.h"
+
 namespace cloth {
 namespace {
 
@@ -134,9 +136,11 @@ class CellRows {
   CellRow *above_ = &cells_[0], *below_ = &cells_[1];
 };
 
-void strip_normals(const Strip& strip, const Vec3Field& position, Vec3Field& normal) {
+/// Of rows [begin, end).
+void strip_normals(const Strip& strip, int begin, int end, const Vec3Field& position, Vec3Field& normal) {
   CellRows cells;
-  for (int row = 0; row < strip.rows; ++row) {
+  if (begin > 0) cells.advance(true, [&](CellRow& below) { below.compute(strip, begin - 1, position); });
+  for (int row = begin; row < end; ++row) {
     cells.advance(row + 1 < strip.rows, [&](CellRow& below) { below.compute(strip, row, position); });
     const int at = row * strip.columns + strip.first;
     double *nx = normal.x() + at, *ny = normal.y() + at, *nz = normal.z() + at;
@@ -180,8 +184,14 @@ void add_to_corners(const Triangle& t, const Vec3& vector, Vec3Field& to) {
 
 }  // namespace
 
-void particle_normals(int rows, int columns, const Vec3Field& position, Vec3Field& normal) {
-  for_each_strip(rows, columns, [&](const Strip& strip) { strip_normals(strip, position, normal); });
+void particle_normals(int rows, int columns, const Vec3Field& position, Vec3Field& normal, WorkerTeam* team) {
+  constexpr int least_particles = 1024;
+  const auto least_rows = static_cast<std::size_t>(least_particles / columns + 1);
+  in_shares(team, static_cast<std::size_t>(rows), least_rows, [&](int, std::size_t begin, std::size_t end) {
+    for_each_strip(rows, columns, [&](const Strip& strip) {
+      strip_normals(strip, static_cast<int>(begin), static_cast<int>(end), position, normal);
+    });
+  });
 }
 
 void particle_normal_changes(int rows, int columns, const Vec3Field& position, const Vec3Field& direction,
@@ -190,8 +200,9 @@ void particle_normal_changes(int rows, int columns, const Vec3Field& position, c
                  [&](const Strip& strip) { strip_normal_changes(strip, position, direction, change); });
 }
 
-void particle_normals(const ClothSystem& system, const Vec3Field& position, Vec3Field& normal) {
-  if (!system.is_mesh()) return particle_normals(system.rows, system.columns, position, normal);
+void particle_normals(const ClothSystem& system, const Vec3Field& position, Vec3Field& normal,
+                      WorkerTeam* team) {
+  if (!system.is_mesh()) return particle_normals(system.rows, system.columns, position, normal, team);
   normal.fill(0);
   for (const Triangle& t : system.triangles) {
     const auto [u, v] = sides_of(t, position);

@@ -1,6 +1,7 @@
 #include "contact/contact_solver.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cassert>
 #include <cmath>
 #include <limits>
@@ -71,13 +72,17 @@ int ContactSolver::solve(std::span<ContactConstraint> contacts, const std::vecto
   is_chosen_.assign(contacts.size(), 0);
   alone_.clear(), batches_.clear(inverse_mass.size());
   const auto choose = [&](double within) {
-    bool any = false;
-    for (std::size_t c = 0; c < contacts.size(); ++c) {
-      if (is_chosen_[c] || !(contacts[c].mobility > 0)) continue;
-      is_chosen_[c] = contacts[c].normal_impulse > 0 || !(slack_of(contacts[c], value) > within);
-      any = any || is_chosen_[c];
-    }
-    return any;
+    std::atomic<bool> any = false;
+    in_shares(team_, contacts.size(), least_contacts, [&](int, std::size_t begin, std::size_t end) {
+      bool any_here = false;
+      for (std::size_t c = begin; c < end; ++c) {
+        if (is_chosen_[c] || !(contacts[c].mobility > 0)) continue;
+        is_chosen_[c] = contacts[c].normal_impulse > 0 || !(slack_of(contacts[c], value) > within);
+        any_here = any_here || is_chosen_[c];
+      }
+      if (any_here) any = true;
+    });
+    return any.load();
   };
   int sweeps = 0;
   double within = limits.margin;

@@ -1,5 +1,6 @@
 // How far particles and obstacles may move in a round: no feature leaves its side of the plane of any pair.
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 #include "contact/continuous_contact.h"
@@ -99,20 +100,23 @@ void ContinuousContact::bound_by_plane(std::size_t k) {
 }
 
 void ContinuousContact::bound_by_swept_volumes() {
-  for (std::size_t i = 0; i < position_.size(); ++i) {
-    if (swept_.to[i] == target_position_[i]) continue;  // to the end of its capsule's axis
-    const double part = part_inside(swept_[i], position_[i], target_position_[i]);
-    if (fraction_[i] <= part) continue;
-    fraction_[i] = part;
-    radius_scale_[i] = std::min(max_room, more_room * radius_scale_[i]);
-    reached_bounds_ = true;
-  }
+  std::atomic<bool> any = false;
+  in_shares(team_, position_.size(), least_particles, [&](int, std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      if (swept_.to[i] == target_position_[i]) continue;  // to the end of its capsule's axis
+      const double part = part_inside(swept_[i], position_[i], target_position_[i]);
+      if (fraction_[i] <= part) continue;
+      fraction_[i] = part;
+      radius_scale_[i] = std::min(max_room, more_room * radius_scale_[i]);
+      any = true;
+    }
+  });
+  reached_bounds_ = any;
 }
 
 /// Moves the particles; returns the longest remaining displacement, in m.
 double ContinuousContact::move_cloth() {
   fraction_.assign(position_.size(), 1.0);
-  reached_bounds_ = false;
   bound_by_planes();
   bound_by_swept_volumes();
   double left = 0;

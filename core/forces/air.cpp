@@ -8,6 +8,8 @@
 #include "cloth/normals.h"
 #include "cloth/sums.h"
 #include "forces/registry.h"
+#include "kernels/in_shares.h"
+#include "kernels/shared_job.h"
 
 namespace cloth {
 
@@ -62,6 +64,7 @@ class AirForce : public Force {
       : air_(air), drag_(drag), mass_(&system.mass) {}
 
   void set_brush(const std::optional<BrushGust>& brush) override { brush_ = brush; }
+  void set_team(WorkerTeam* team, ThreadUse use) override { job_.set_team(team, use); }
   bool has_normals() const override { return true; }
   void hold_normals(bool hold) override { holds_normals_ = hold; }
   KernelCoverage join(SweepTerms& terms) const override {
@@ -72,34 +75,19 @@ class AirForce : public Force {
   }
   void update(const ClothSystem& system, const Vec3Field& position, double time, Vec3Field& force) override {
     if (normal_.size() != position.size()) normal_ = Vec3Field(position.size());
-    if (!holds_normals_) particle_normals(system, position, normal_);
+    WorkerTeam* const team = job_.begin();
+    if (!holds_normals_) particle_normals(system, position, normal_, team);
     wind_ = wind_at(air_, time);
-
-    const double *nx = normal_.x(), *ny = normal_.y(), *nz = normal_.z();
-    double *fx = force.x(), *fy = force.y(), *fz = force.z();
-    if (wind_.squaredNorm() > 0) {
-      const double* const mass = mass_->data();
-      const NodeCoefficient drag = drag_;
-      const double ux = wind_.x(), uy = wind_.y(), uz = wind_.z();
-#pragma GCC ivdep
-      for (std::size_t i = 0; i < position.size(); ++i) {
-        const double push = drag.of(mass[i]) * (nx[i] * ux + ny[i] * uy + nz[i] * uz);
-        fx[i] += push * nx[i], fy[i] += push * ny[i], fz[i] += push * nz[i];
-      }
-    }
+    if (wind_.squaredNorm() > 0)
+      in_shares(team, position.size(), least_particles,
+                [&](int, std::size_t begin, std::size_t end) { add_wind(begin, end, force); });
+    job_.end();
     if (brush_) add_brush(position, force);
   }
   void add_damping(const Vec3Field&, const Vec3Field& velocity, Vec3Field& product) const override {
-    const double *nx = normal_.x(), *ny = normal_.y(), *nz = normal_.z();
-    const double *vx = velocity.x(), *vy = velocity.y(), *vz = velocity.z();
-    double *px = product.x(), *py = product.y(), *pz = product.z();
-    const double* const mass = mass_->data();
-    const NodeCoefficient drag = drag_;
-#pragma GCC ivdep
-    for (std::size_t i = 0; i < velocity.size(); ++i) {
-      const double along = drag.of(mass[i]) * (nx[i] * vx[i] + ny[i] * vy[i] + nz[i] * vz[i]);
-      px[i] += along * nx[i], py[i] += along * ny[i], pz[i] += along * nz[i];
-    }
+    in_shares(job_.begin(), velocity.size(), least_particles,
+              [&](int, std::size_t begin, std::size_t end) { add_drag(begin, end, velocity, product); });
+    job_.end();
   }
   bool add_node_damping(NodeDamping& damping) const override {
     damping.along_normal.each += drag_.each, damping.along_normal.per_mass += drag_.per_mass;
@@ -125,9 +113,7 @@ class AirForce : public Force {
     for (std::size_t i = 0; i < to.nodes.size(); ++i)
       to.nodes.add(i, block_along(0, weights.velocity * drag(i), normal_[i]));
   }
-  bool has_asymmetric_part() const override {
-    return !holds_normals_ || brush_.has_value();
-  }
+  bool has_asymmetric_part() const override { return !holds_normals_ || brush_.has_value(); }
   /// F = c_a (n . w) n with w = u - v: the normal turns with the positions, and a brush moves past them.
   void add_asymmetric_product(const ClothSystem& system, const Vec3Field& position, const Vec3Field& velocity,
                               const Vec3Field& direction, Vec3Field& product) const override {
@@ -148,6 +134,34 @@ class AirForce : public Force {
   }
 
  private:
+  static constexpr std::size_t least_particles = 2048;  ///< worth a thread of their own
+
+  /// Of particles [begin, end).
+  void add_wind(std::size_t begin, std::size_t end, Vec3Field& force) const {
+    const double *nx = normal_.x(), *ny = normal_.y(), *nz = normal_.z();
+    double *fx = force.x(), *fy = force.y(), *fz = force.z();
+    const double* const mass = mass_->data();
+    const NodeCoefficient drag = drag_;
+    const double ux = wind_.x(), uy = wind_.y(), uz = wind_.z();
+#pragma GCC ivdep
+    for (std::size_t i = begin; i < end; ++i) {
+      const double push = drag.of(mass[i]) * (nx[i] * ux + ny[i] * uy + nz[i] * uz);
+      fx[i] += push * nx[i], fy[i] += push * ny[i], fz[i] += push * nz[i];
+    }
+  }
+  void add_drag(std::size_t begin, std::size_t end, const Vec3Field& velocity, Vec3Field& product) const {
+    const double *nx = normal_.x(), *ny = normal_.y(), *nz = normal_.z();
+    const double *vx = velocity.x(), *vy = velocity.y(), *vz = velocity.z();
+    double *px = product.x(), *py = product.y(), *pz = product.z();
+    const double* const mass = mass_->data();
+    const NodeCoefficient drag = drag_;
+#pragma GCC ivdep
+    for (std::size_t i = begin; i < end; ++i) {
+      const double along = drag.of(mass[i]) * (nx[i] * vx[i] + ny[i] * vy[i] + nz[i] * vz[i]);
+      px[i] += along * nx[i], py[i] += along * ny[i], pz[i] += along * nz[i];
+    }
+  }
+
   void add_brush(const Vec3Field& position, Vec3Field& force) {
     if (brush_force_.size() != position.size()) brush_force_ = Vec3Field(position.size());
     for (std::size_t i = 0; i < position.size(); ++i) {
@@ -169,6 +183,7 @@ class AirForce : public Force {
   Vec3 wind_{0, 0, 0};  ///< m/s, at the time of the last update
   Vec3Field normal_;
   bool holds_normals_ = false;
+  mutable SharedJob job_;     ///< an evaluation
   mutable Vec3Field turned_;  ///< scratch
   Vec3Field brush_force_;     ///< N, sized only once a brush is used
 };

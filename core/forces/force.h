@@ -15,8 +15,11 @@
 #include "cloth/cloth_system.h"
 #include "forces/hand.h"
 #include "forces/linearisation.h"
+#include "kernels/thread_choice.h"
 
 namespace cloth {
+
+class WorkerTeam;
 
 struct Air;
 struct SliderGrid;
@@ -102,6 +105,9 @@ class Force {
 
   /// Sets the wind brush, or removes it; only air drag uses it.
   virtual void set_brush(const std::optional<BrushGust>&) {}
+
+  /// The threads that evaluations share their loops with; null: one thread.
+  virtual void set_team(WorkerTeam*, ThreadUse) {}
 
   /// Whether this force acts along normals of the cloth, as air does.
   virtual bool has_normals() const { return false; }

@@ -268,6 +268,11 @@ void ForceModel::hold_normals(bool hold) {
   for (const auto& force : forces_) force->hold_normals(hold);
 }
 
+void ForceModel::set_team(WorkerTeam* team, ThreadUse use) {
+  solve_job_.set_team(team, use);
+  for (const auto& force : forces_) force->set_team(team, use);
+}
+
 void ForceModel::set_brush(const std::optional<BrushGust>& brush) {
   for (const auto& force : forces_) force->set_brush(brush);
   sort_forces();

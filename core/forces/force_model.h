@@ -93,7 +93,9 @@ class ForceModel {
   void set_brush(const std::optional<BrushGust>& brush);
   void set_pull(const std::optional<Pull>& pull, double stiffness, double damping);
 
-  /// The threads that a solve for velocities shares its loops with, see shared_job.h.
+  /// The threads that evaluations, beside those of the kernels, and solves for velocities share their loops
+  /// with. Results do not depend on them.
+  void set_team(WorkerTeam* team, ThreadUse use);
   SharedJob& solve_job() const { return solve_job_; }
 
   /// The kernels for this cloth; null where no kernel supports it.

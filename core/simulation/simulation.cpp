@@ -357,7 +357,7 @@ void Simulation::share_work() {
                                 thread_use_ == ThreadUse::where_they_gain && system_.size() < small;
   WorkerTeam* const of_forces = keeps_one_thread ? nullptr : team_.get();
   if (forces_->sweep()) forces_->sweep()->set_team(of_forces, thread_use_);
-  forces_->solve_job().set_team(of_forces, thread_use_);
+  forces_->set_team(of_forces, thread_use_);
   if (contact_) contact_->set_team(team_.get(), thread_use_);
 }
 

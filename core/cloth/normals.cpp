@@ -5,8 +5,6 @@
 #include <cmath>
 #include <utility>
 
-#include "kernels/in_shares.h"
-
 namespace cloth {
 namespace {
 
@@ -184,14 +182,14 @@ void add_to_corners(const Triangle& t, const Vec3& vector, Vec3Field& to) {
 
 }  // namespace
 
-void particle_normals(int rows, int columns, const Vec3Field& position, Vec3Field& normal, WorkerTeam* team) {
-  constexpr int least_particles = 1024;
-  const auto least_rows = static_cast<std::size_t>(least_particles / columns + 1);
-  in_shares(team, static_cast<std::size_t>(rows), least_rows, [&](int, std::size_t begin, std::size_t end) {
-    for_each_strip(rows, columns, [&](const Strip& strip) {
-      strip_normals(strip, static_cast<int>(begin), static_cast<int>(end), position, normal);
-    });
-  });
+void particle_normals_of_rows(int begin, int end, int rows, int columns, const Vec3Field& position,
+                              Vec3Field& normal) {
+  for_each_strip(rows, columns,
+                 [&](const Strip& strip) { strip_normals(strip, begin, end, position, normal); });
+}
+
+void particle_normals(int rows, int columns, const Vec3Field& position, Vec3Field& normal) {
+  particle_normals_of_rows(0, rows, rows, columns, position, normal);
 }
 
 void particle_normal_changes(int rows, int columns, const Vec3Field& position, const Vec3Field& direction,
@@ -200,9 +198,8 @@ void particle_normal_changes(int rows, int columns, const Vec3Field& position, c
                  [&](const Strip& strip) { strip_normal_changes(strip, position, direction, change); });
 }
 
-void particle_normals(const ClothSystem& system, const Vec3Field& position, Vec3Field& normal,
-                      WorkerTeam* team) {
-  if (!system.is_mesh()) return particle_normals(system.rows, system.columns, position, normal, team);
+void particle_normals(const ClothSystem& system, const Vec3Field& position, Vec3Field& normal) {
+  if (!system.is_mesh()) return particle_normals(system.rows, system.columns, position, normal);
   normal.fill(0);
   for (const Triangle& t : system.triangles) {
     const auto [u, v] = sides_of(t, position);

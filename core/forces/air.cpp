@@ -76,7 +76,7 @@ class AirForce : public Force {
   void update(const ClothSystem& system, const Vec3Field& position, double time, Vec3Field& force) override {
     if (normal_.size() != position.size()) normal_ = Vec3Field(position.size());
     WorkerTeam* const team = job_.begin();
-    if (!holds_normals_) particle_normals(system, position, normal_, team);
+    if (!holds_normals_) find_normals(system, position, team);
     wind_ = wind_at(air_, time);
     if (wind_.squaredNorm() > 0)
       in_shares(team, position.size(), least_particles,
@@ -136,6 +136,15 @@ class AirForce : public Force {
  private:
   static constexpr std::size_t least_particles = 2048;  ///< worth a thread of their own
 
+  void find_normals(const ClothSystem& system, const Vec3Field& position, WorkerTeam* team) {
+    if (system.is_mesh()) return particle_normals(system, position, normal_);
+    const auto rows = static_cast<std::size_t>(system.rows);
+    in_shares(team, rows, least_particles / static_cast<std::size_t>(system.columns) + 1,
+              [&](int, std::size_t begin, std::size_t end) {
+                particle_normals_of_rows(static_cast<int>(begin), static_cast<int>(end), system.rows,
+                                         system.columns, position, normal_);
+              });
+  }
   /// Of particles [begin, end).
   void add_wind(std::size_t begin, std::size_t end, Vec3Field& force) const {
     const double *nx = normal_.x(), *ny = normal_.y(), *nz = normal_.z();

@@ -86,7 +86,7 @@ TEST_P(ParticleMotion, IsWithinWhatIsAllowedOfEach) {
   EXPECT_TRUE(are_within(moved, range));
   for (const std::size_t i : {std::size_t{0}, std::size_t{15}, std::size_t{20}}) {
     std::vector<double> further = moved, wider = range;
-    wider[i] = std::nextafter(0.5, 1);
+    wider[i] = 0.5 + 1e-15;
     EXPECT_FALSE(are_within(moved, wider));
     further[i] = 1.1, wider[i] = 0.1;  // beyond by what another may move
     EXPECT_FALSE(are_within(further, wider));

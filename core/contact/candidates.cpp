@@ -23,16 +23,15 @@ constexpr double of_rounding = 1e-9;  ///< of a distance
 
 }  // namespace
 
-void Candidates::collect(const PairQuery& now, const std::vector<double>& range, PairSearch& search,
-                         WorkerTeam* team) {
+void Candidates::collect(const PairQuery& now, const std::vector<double>& length,
+                         const std::vector<double>& range, PairSearch& search, WorkerTeam* team) {
   const double reach = std::max(now.swept.reach, now.swept.own_reach);
   position_ = now.position, poses_ = now.poses;
   around_.reach = now.swept.reach, around_.own_reach = now.swept.own_reach;
   around_.from = around_.to = position_;
   around_.radius.resize(range.size()), range_.resize(range.size());
   for (std::size_t i = 0; i < range.size(); ++i) {
-    const double length = range[i] - now.swept.radius[i];
-    range_[i] = range[i] + std::min(ways_ahead * length, most_ahead * reach) + least_ahead * reach;
+    range_[i] = range[i] + std::min(ways_ahead * length[i], most_ahead * reach) + least_ahead * reach;
     around_.radius[i] = range_[i];
   }
   // All of a feature's points may move by the largest range of its particles.
@@ -46,7 +45,8 @@ void Candidates::collect(const PairQuery& now, const std::vector<double>& range,
   take_features();
 }
 
-/// Of displacements, for holds().
+/// For holds(): the displacement that each particle may have, and the least of what an edge allows one of its
+/// ends together with the other, the larger of both.
 void Candidates::allow() {
   allowed_.clear();
   for (const double range : range_) allowed_.push_back((1 - of_rounding) * range);
@@ -134,7 +134,7 @@ bool Candidates::holds(const PairQuery& now, const std::vector<double>& moved,
   if (active_kernels<MotionKernels>().are_within(moved.data(), range.data(), widest, allowed_.data(),
                                                  allowed_beside_.data(), static_cast<long>(range.size())))
     return true;
-  for (std::size_t i = 0; i < range.size(); ++i)  // as exactly as that needs
+  for (std::size_t i = 0; i < range.size(); ++i)
     if (moved[i] + range[i] > allowed_[i]) return false;
   return std::all_of(cloth_.edges.begin(), cloth_.edges.end(), [&](const std::array<int, 2>& edge) {
     const std::size_t a = at(edge[0]), b = at(edge[1]);

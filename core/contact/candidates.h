@@ -35,9 +35,10 @@ class Candidates {
   Candidates(const Surface& cloth, const std::vector<ObstacleBody>& bodies)
       : cloth_(cloth), bodies_(bodies) {}
 
-  /// Finds the pairs and how far they are apart at least. `range`: m, bound of each particle's displacement
-  /// in this round. `team`: null is one thread.
-  void collect(const PairQuery& now, const std::vector<double>& range, PairSearch& search, WorkerTeam* team);
+  /// Finds the pairs and how far they are apart at least. `length` and `range`: m, of each particle's
+  /// displacement in this round, and its bound. `team`: null is one thread.
+  void collect(const PairQuery& now, const std::vector<double>& length, const std::vector<double>& range,
+               PairSearch& search, WorkerTeam* team);
   /// Takes pairs that are found in another way: without rooms, and for one round alone.
   void take(std::vector<FeaturePair>& pairs);
   void clear() { range_.clear(); }
@@ -81,7 +82,7 @@ class Candidates {
 
   Vec3Field position_;
   std::vector<double> range_;  ///< m, displacement of each particle up to which the pairs are complete
-  std::vector<double> allowed_, allowed_beside_;  ///< m, of a particle, and of it or any one beside it
+  std::vector<double> allowed_, allowed_beside_;  ///< m, see allow()
   SweptBounds around_;                            ///< m, all of these displacements
   std::vector<Pose> poses_;
 };

@@ -148,7 +148,7 @@ void ClosePairs::find(const PairQuery& now, std::vector<FeaturePair>& pairs,
   } else {
     find_distances(kept_.position(), now.position, team_, moved_);
     if (!kept_.holds(now, moved_, range_)) {
-      kept_.collect(now, range_, search_, team_);
+      kept_.collect(now, length_, range_, search_, team_);
       moved_.assign(range_.size(), 0);
     }
     if (add_spent()) {

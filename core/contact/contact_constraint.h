@@ -51,13 +51,14 @@ struct ContactConstraint {
   }
 };
 
-/// Adds the effect of an impulse at the contact's point to `value`.
+/// Adds the effect of an impulse at the contact's point to `value`, of the particles that it moves alone.
 [[gnu::always_inline]] inline void add_impulse(const ContactConstraint& contact,
                                                const std::vector<double>& inverse_mass, const Vec3& impulse,
                                                Vec3Field& value) {
   for (std::size_t k = 0; k < at(contact.count); ++k) {
     const auto i = at(contact.particle[k]);
-    value.add(i, contact.weight[k] * inverse_mass[i] * impulse);
+    const double response = contact.weight[k] * inverse_mass[i];
+    if (response != 0) value.add(i, response * impulse);
   }
 }
 

@@ -16,9 +16,12 @@ double slack_of(const ContactConstraint& contact, const Vec3Field& value) {
   return contact.normal.dot(contact.point(value)) - contact.bound;
 }
 
-/// Of a contact whose particles have no other, this is the solution.
+/// Of a contact whose particles have no other, this is the solution. Particles of weight 0 are not looked at:
+/// another thread may move them.
 void relax_alone(ContactConstraint& contact, const std::vector<double>& inverse_mass, Vec3Field& value) {
-  const Vec3 point = contact.point(value);
+  Vec3 point = Vec3::Zero();
+  for (std::size_t k = 0; k < at(contact.count); ++k)
+    if (contact.weight[k] != 0) point += contact.weight[k] * value[at(contact.particle[k])];
   const double inverse_mobility = 1 / contact.mobility, level = contact.normal.dot(point);
   const double change = std::max(contact.normal_impulse + (contact.bound - level) * inverse_mobility, 0.0) -
                         contact.normal_impulse;

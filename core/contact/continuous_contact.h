@@ -99,9 +99,9 @@ class ContinuousContact : public ContactStage {
   double move_cloth();
   void bound_by_planes();
   struct Approach {
-    double room = 0;                 ///< m, that the pair may take from its gap
-    double near = 0, far = 0;        ///< m, furthest of its sides towards the other
-    std::array<double, 4> ahead{};   ///< m, of its particles along the normal
+    double room = 0;                ///< m, that the pair may take from its gap
+    double near = 0, far = 0;       ///< m, furthest of its sides towards the other
+    std::array<double, 4> ahead{};  ///< m, of its particles along the normal
     double of_both() const { return near + far; }
   };
   Approach approach_within(std::size_t pair) const;
@@ -179,9 +179,9 @@ class ContinuousContact : public ContactStage {
   Vec3Field free_position_;        ///< m, target without contact in this round
   Vec3Field target_position_;      ///< m, target with contact
   Vec3Field position_;             ///< m, reached so far
-  Vec3Field round_from_;           ///< m, position_ as the round began
+  Vec3Field round_from_;           ///< m, position_ as the round began, while obstacles move
   Vec3Field integrated_position_;  ///< m, where the integrator put the particles, or those of StiffTarget
-  Vec3Field approach_position_;    ///< m, where the integrator put the particles before StiffTarget
+  Vec3Field approach_position_;    ///< m, where the integrator put the particles, with force_work_
   std::vector<double> fraction_;
   std::vector<std::uint8_t> is_bound_;  ///< of each pair, by its plane
   std::vector<double>

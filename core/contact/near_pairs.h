@@ -23,14 +23,6 @@ struct SweptBounds {
 
   std::size_t size() const { return radius.size(); }
   Capsule operator[](std::size_t i) const { return {from[i], to[i], radius[i]}; }
-  void resize(std::size_t particles) {
-    if (from.size() != particles) from = to = Vec3Field(particles);
-    radius.resize(particles);
-  }
-  void set(std::size_t i, const Capsule& capsule) {
-    from.set(i, capsule.from), to.set(i, capsule.to);
-    radius[i] = capsule.radius;
-  }
 };
 
 class PairSearch {

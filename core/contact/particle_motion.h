@@ -10,7 +10,7 @@ namespace cloth {
 
 class WorkerTeam;
 
-/// Of all particles; below it a second thread takes longer to fetch them than to work.
+/// Least number of particles that is worth a thread of its own, which has to fetch them first.
 inline constexpr std::size_t least_particles = 2048;
 
 /// m, of each particle; returns the longest. `team`: null is one thread.
@@ -21,10 +21,10 @@ double find_distances(const Vec3Field& from, const Vec3Field& to, WorkerTeam* te
 void find_mean_velocity(const Vec3Field& from, const Vec3Field& to, double step, WorkerTeam* team,
                         Vec3Field& velocity);
 
-/// Whether some particle in [begin, end) has two values.
+/// Whether some particle in [begin, end) differs in any bit.
 bool any_differs(const Vec3Field& a, const Vec3Field& b, std::size_t begin, std::size_t end);
 
-/// Calls visit(i) for every particle of which `a` and `b` differ, ascending.
+/// Calls visit(i) for every particle that `a` and `b` give different values, ascending.
 template <class Visit>
 void visit_different(const Vec3Field& a, const Vec3Field& b, const Visit& visit) {
   constexpr std::size_t run = 64;

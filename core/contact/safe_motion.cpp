@@ -59,7 +59,7 @@ double part_inside(const Capsule& capsule, const Vec3& start, const Vec3& end) {
 
 /// Bounds the fraction of its displacement that each particle can take without leaving its side of any plane.
 void ContinuousContact::bound_by_planes() {
-  fill_in_shares(team_, pairs_.size(), least_contacts, is_bound_, [&](std::size_t k) -> std::uint8_t {
+  fill_in_shares(team_, pairs_.size(), least_pairs, is_bound_, [&](std::size_t k) -> std::uint8_t {
     const Approach approach = approach_within(k);
     return separations_[k].gap() > 0 && approach.of_both() <= approach.room ? 0 : 1;
   });
@@ -102,14 +102,16 @@ void ContinuousContact::bound_by_plane(std::size_t k) {
 void ContinuousContact::bound_by_swept_volumes() {
   std::atomic<bool> any = false;
   in_shares(team_, position_.size(), least_particles, [&](int, std::size_t begin, std::size_t end) {
+    bool any_here = false;
     for (std::size_t i = begin; i < end; ++i) {
       if (swept_.to[i] == target_position_[i]) continue;  // to the end of its capsule's axis
       const double part = part_inside(swept_[i], position_[i], target_position_[i]);
       if (fraction_[i] <= part) continue;
       fraction_[i] = part;
       radius_scale_[i] = std::min(max_room, more_room * radius_scale_[i]);
-      any = true;
+      any_here = true;
     }
+    if (any_here) any = true;
   });
   reached_bounds_ = any;
 }

@@ -114,8 +114,8 @@ double ContinuousContact::recovering_work(const ContactStep& step) const {
                 step.potential(led));
 }
 
-/// The particles that contact has moved or may change the velocity of, or whose energy it deferred,
-/// ascending.
+/// The particles that contact has moved, has held back from their targets or may change the velocity of, or
+/// whose energy it deferred, ascending.
 void ContinuousContact::find_changed(const ContactMemory& memory) {
   is_changed_.assign(position_.size(), 0);
   const auto take = [&](std::size_t i) { is_changed_[i] = 1; };

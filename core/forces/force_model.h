@@ -96,7 +96,7 @@ class ForceModel {
   /// The threads that evaluations, beside those of the kernels, and solves for velocities share their loops
   /// with. Results do not depend on them.
   void set_team(WorkerTeam* team, ThreadUse use);
-  SharedJob& solve_job() const { return solve_job_; }
+  SharedJob& solve_job() const { return solve_job_; }  ///< of a solve, see shared_job.h
 
   /// The kernels for this cloth; null where no kernel supports it.
   SpringSweep* sweep() const { return sweep_.get(); }

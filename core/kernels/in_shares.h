@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <type_traits>
 #include <vector>
 
 #include "kernels/worker_team.h"
@@ -36,6 +37,7 @@ int in_shares(WorkerTeam* team, std::size_t count, std::size_t least, const Job&
 template <class T, class Value>
 void fill_in_shares(WorkerTeam* team, std::size_t count, std::size_t least, std::vector<T>& values,
                     const Value& value) {
+  static_assert(!std::is_same_v<T, bool>, "bits of one byte cannot be set by two threads");
   values.resize(count);
   in_shares(team, count, least, [&](int, std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) values[k] = value(k);

@@ -1,5 +1,5 @@
-// Products of block matrices and vectors, for iterative solvers, and sums over springs. Sums are taken in the order of cloth/sums.h,
-// without fused operations, so that every instruction set gives the same bits.
+// Products of block matrices and vectors, for iterative solvers, and sums over springs. Sums are taken in the
+// order of cloth/sums.h, without fused operations, so that every instruction set gives the same bits.
 #pragma once
 
 #include <cstddef>

@@ -13,6 +13,7 @@ namespace {
 struct Outcome {
   std::vector<double> values;
   int touched = 0;
+  std::int64_t velocity_iterations = 0;
 };
 
 /// The end of a run that is long enough for the cloth to lie on what is under it.
@@ -26,6 +27,7 @@ Outcome run_with(int threads, const Scene& scene, double duration) {
     if (stop) break;
     outcome.touched = std::max(outcome.touched, simulation.last_contact().contacts);
   }
+  outcome.velocity_iterations = simulation.count().velocity_iterations;
   for (const Vec3Field* field : {&simulation.state().position, &simulation.state().velocity})
     outcome.values.insert(outcome.values.end(), field->flat().begin(), field->flat().end());
   return outcome;
@@ -60,9 +62,26 @@ TEST(ContactOfManyThreads, IsTheSameOfAClothOnItself) {
   expect_same_for_any_threads(scene, 0.4);
 }
 
-/// So many particles and contacts that loops over each are shared, and a solve for stiff damping.
+/// So many particles and contacts that loops over each are shared.
 TEST(ContactOfManyThreads, IsTheSameOfAFineCloth) {
   expect_same_for_any_threads(scene_of("slope", 65), 0.03);
+}
+
+/// Contacts of faces, with points at their corners: most corners have weight 0 and are those of other
+/// contacts.
+TEST(ContactOfManyThreads, IsTheSameOfAFineClothOnALargeBall) {
+  Scene scene = scene_of("slope", 65);
+  Obstacle& slope = scene.obstacles[0];
+  slope.shape = &sphere_shape();
+  slope.radius = 20, slope.center = -slope.radius * slope.normal;
+  expect_same_for_any_threads(scene, 0.1);
+}
+
+TEST(ContactOfManyThreads, IsTheSameWhereStiffDampingIsSolvedFor) {
+  Scene scene = scene_of("slope", 65);
+  scene.springs->damping *= 20;
+  EXPECT_GT(run_with(1, scene, 0.01).velocity_iterations, 0) << "nothing is solved for";
+  expect_same_for_any_threads(scene, 0.02);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "kernels/instruction_set.h"
+#include "kernels/worker_team.h"
 #include "support/random.h"
 
 namespace cloth::test::contact_solver_test {
@@ -224,6 +225,38 @@ TEST(ContactSolver, GivesTheSameBitsOnEveryInstructionSet) {
   }
   set_instruction_set(std::nullopt);
   EXPECT_GT(((*first)[1] - start[1]).norm(), 0.01) << "nothing happens";
+}
+
+/// Contacts that share no particle that they move: neither what has weight 0 nor what is pinned counts.
+TEST(ContactSolver, GivesTheSameBitsToManyThreadsWhereContactsMeetInParticlesThatTheyDoNotMove) {
+  constexpr int count = 4000;
+  Random random;
+  std::vector<double> inverse_mass(2 * count, 0.0);  // of each contact one that it moves, and pinned ones
+  for (int c = 0; c < count; ++c) inverse_mass[at(c)] = random.uniform(1, 100);
+  std::vector<ContactConstraint> contacts;
+  for (int c = 0; c < count; ++c) {
+    ContactConstraint contact;
+    contact.count = 4;
+    contact.particle = {c, random.integer(0, count - 1), random.integer(0, count - 1),
+                        random.integer(count, 2 * count - 1)};
+    contact.weight = {random.uniform(0.5, 1), 0, 0, random.uniform(-1, 1)};
+    contact.bound = random.uniform(-1, 1), contact.friction = random.uniform(0, 1);
+    contact.mobility = mobility_of(contact, inverse_mass);
+    contacts.push_back(contact);
+  }
+  const Vec3Field start = random.field(2 * count, 1);
+  const auto solved = [&](WorkerTeam* team) {
+    std::vector<ContactConstraint> own = contacts;
+    Vec3Field value = start;
+    ContactSolver solver;
+    solver.set_team(team);
+    EXPECT_EQ(solver.solve(own, inverse_mass, {.sweeps = 50, .tolerance = 1e-9}, value), 1);
+    return value;
+  };
+  const Vec3Field alone = solved(nullptr);
+  EXPECT_NE(alone, start);
+  WorkerTeam team(3);
+  for (int repeat = 0; repeat < 100; ++repeat) ASSERT_EQ(solved(&team), alone) << repeat;
 }
 
 }  // namespace

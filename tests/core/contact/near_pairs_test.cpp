@@ -168,17 +168,19 @@ TEST(NearPairs, DoNotDependOnTheNumbersOfEarlierSearches) {
   std::size_t compared = 0;
   for (int place = 0; place < 100; ++place) {
     SweptBounds swept{.reach = 0.1, .own_reach = 0.1};
-    swept.resize(sheet.position.size());
-    for (std::size_t i = 0; i < swept.size(); ++i) {
-      const Vec3 at = sheet.position[i] + 0.01 * place * Vec3(1, 1, 1);
-      swept.set(i, {at, at, i % 6 == 0 ? 0.03 : 0.001});
+    swept.from = sheet.position;
+    for (std::size_t i = 0; i < swept.from.size(); ++i) {
+      swept.from.add(i, 0.01 * place * Vec3(1, 1, 1));
+      swept.radius.push_back(i % 6 == 0 ? 0.03 : 0.001);
     }
+    swept.to = swept.from;
     PairSearch keeping(sheet.surface, sheet.position, none, true, 0);
     std::vector<FeaturePair> pairs, fresh;
     keeping.find(swept, {}, pairs);
     for (std::size_t i = 0; i < swept.size(); i += 6) {
-      const Vec3 moved = swept.from[i] + Vec3::Constant(0.015);
-      swept.set(i, {moved, moved, 0.001});
+      swept.from.add(i, Vec3::Constant(0.015));
+      swept.to.set(i, swept.from[i]);
+      swept.radius[i] = 0.001;
     }
     keeping.find(swept, {}, pairs);
     PairSearch(sheet.surface, sheet.position, none, true, 0).find(swept, {}, fresh);

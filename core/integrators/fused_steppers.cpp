@@ -159,8 +159,7 @@ IntegratorReport FusedPredictedVerlet::step(ForceModel& forces, const StepTimes&
     if (constraint_->opening_change()) {
       work += half * power_;
       if (forces.has_damping_loss()) {
-        keep_opening(forces, times, state);
-        correct_opening(half, work);
+        work.damping_loss -= half * power_at_opening(forces, times, state);
       }
       report.force_evaluations += finish_predicted(forces, times, state, work) - 1;
       return report;
@@ -178,27 +177,25 @@ IntegratorReport FusedPredictedVerlet::step(ForceModel& forces, const StepTimes&
   return report;
 }
 
-/// -D v at the beginning of the step, with the velocity that it had then instead of the one predicted for it:
+/// The power of -D v for the constraint's change in the opening of the step, with the velocity that it had then instead of the one predicted for it:
 /// no pass keeps the damping apart from other forces, and in the ledger the difference is one of order 2.
 /// That state is found from the drifted one and what the constraint has changed of it, to rounding, so that
 /// steps in which the constraint moves nothing need not store it.
-void FusedPredictedVerlet::keep_opening(ForceModel& forces, const StepTimes& times, const ClothState& state) {
+double FusedPredictedVerlet::power_at_opening(ForceModel& forces, const StepTimes& times,
+                                              const ClothState& state) {
   const double half = 0.5 * times.step;
-  const Vec3Field& change = *constraint_->opening_change();
+  const SparseField& change = *constraint_->opening_change();
   before_.position = state.position, before_.velocity = state.velocity;
   add_scaled(-1, change, before_.velocity);
-  if (const Vec3Field* closing = constraint_->closing_change()) add_scaled(-1, *closing, before_.velocity);
+  if (const SparseField* closing = constraint_->closing_change()) add_scaled(-1, *closing, before_.velocity);
   add_acceleration(forces.system(), -half, force_, before_.velocity);
   add_scaled(-times.step, change, before_.position);
   add_scaled(-times.step, before_.velocity, before_.position);
   add_acceleration(forces.system(), -half, force_, before_.velocity);
-  Vec3Field& damping = opening_damping_;
-  if (damping.size() != before_.position.size()) damping = Vec3Field(before_.position.size());
+  if (opening_force_.size() != before_.position.size()) opening_force_ = Vec3Field(before_.position.size());
   forces.update(before_.position, times.begin);
-  forces.force(before_.position, before_.velocity, damping);
-  const auto to = damping.flat();
-  const std::span<const double> rest = forces.position_force().flat();
-  for (std::size_t k = 0; k < to.size(); ++k) to[k] -= rest[k];
+  forces.force(before_.position, before_.velocity, opening_force_);
+  return power_of_damping(opening_force_, forces.position_force(), change);
 }
 
 /// The next step begins with this evaluation.

@@ -102,7 +102,7 @@ class FusedPredictedVerlet : public Verlet {
  private:
   void begin_force(ForceModel& forces, double time, ClothState& state);
   Work power_of(const ForceModel& forces, const StepSums& sums) const;
-  void keep_opening(ForceModel& forces, const StepTimes& times, const ClothState& state);
+  double power_at_opening(ForceModel& forces, const StepTimes& times, const ClothState& state);
 
   ClothState before_;  ///< at the beginning of a step in which a constraint moves particles
 };

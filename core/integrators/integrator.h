@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "forces/force_model.h"
+#include "geometry/sparse_field.h"
 
 namespace cloth {
 
@@ -73,8 +74,8 @@ class DriftConstraint {
   /// The changes of velocity in m/s in the last step: by before_kick() and after_drift(), and by the closing
   /// kick. Null: none. The work of the constraint is computed as if the opening change
   /// acted before all forces of the step and the closing change after them.
-  virtual const Vec3Field* opening_change() const = 0;
-  virtual const Vec3Field* closing_change() const = 0;
+  virtual const SparseField* opening_change() const = 0;
+  virtual const SparseField* closing_change() const = 0;
 };
 
 /// Contact of methods that divide a step into inner ones: it corrects the state at the end of each, so that

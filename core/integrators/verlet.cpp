@@ -11,6 +11,18 @@ constexpr double tolerance_before_contact = 1e-5;
 
 }  // namespace
 
+double power_of_damping(const Vec3Field& force, const Vec3Field& position_force, const SparseField& change) {
+  if (!change.is_everywhere()) {
+    double power = 0;
+    for (const std::uint32_t i : change.particles()) power += (force[i] - position_force[i]).dot(change[i]);
+    return power;
+  }
+  const double *all = force.flat().data(), *rest = position_force.flat().data();
+  return ordered_sum(3 * force.size(), [all, rest, by = change.values().flat().data()](std::size_t k) {
+    return (all[k] - rest[k]) * by[k];
+  });
+}
+
 IntegratorReport Verlet::step(ForceModel& forces, const StepTimes& times, ClothState& state, Work& work) {
   if (end_ == EndVelocity::predicted && forces.has_damping())
     return predicted_step(forces, times, state, work);
@@ -35,12 +47,10 @@ IntegratorReport Verlet::open_step(ForceModel& forces, const StepTimes& times, C
   if (!holds_force_) evaluate(forces, state);
   work += 0.5 * h * power_;
   if (constraint_) constraint_->before_kick(0.5 * h, h, state);
-  const bool corrects = constraint_ && forces.has_damping_loss();
-  if (corrects) keep_damping(forces, opening_damping_);
   add_acceleration(forces.system(), 0.5 * h, force(forces), state.velocity);
   add_scaled(h, state.velocity, state.position);
   if (constraint_) constraint_->after_drift(0.5 * h, state);
-  if (corrects) correct_opening(0.5 * h, work);
+  if (constraint_ && forces.has_damping_loss()) correct_opening(forces, 0.5 * h, work);
   ++report.force_evaluations;  // of the closing
   holds_position_force_ = led_by_contact_ = false;
   is_open_ = true;
@@ -74,12 +84,11 @@ IntegratorReport Verlet::predicted_step(ForceModel& forces, const StepTimes& tim
   }
   work += half * power_;
   if (constraint_) constraint_->before_kick(half, times.step, state);
-  if (corrects) keep_damping(forces, opening_damping_);
   add_acceleration(forces.system(), half, force_, state.velocity);
   add_scaled(times.step, state.velocity, state.position);
   add_acceleration(forces.system(), half, force_, state.velocity);
   if (constraint_) constraint_->after_drift(half, state);
-  if (corrects) correct_opening(half, work);
+  if (corrects) correct_opening(forces, half, work);
   report.force_evaluations += finish_predicted(forces, times, state, work);
   return report;
 }
@@ -99,17 +108,10 @@ int Verlet::finish_predicted(ForceModel& forces, const StepTimes& times, ClothSt
   return 1;
 }
 
-void Verlet::correct_opening(double half_step, Work& work) const {
-  if (const Vec3Field* change = constraint_->opening_change())
-    work.damping_loss -= half_step * dot(opening_damping_.flat(), change->flat());
-}
-
-/// - D v of the force that is known.
-void Verlet::keep_damping(const ForceModel& forces, Vec3Field& damping) const {
-  if (damping.size() != force_.size()) damping = Vec3Field(force_.size());
-  const auto to = damping.flat();
-  const std::span<const double> all = force_.flat(), rest = forces.position_force().flat();
-  for (std::size_t k = 0; k < to.size(); ++k) to[k] = all[k] - rest[k];
+/// The damping is still that of the opening kick.
+void Verlet::correct_opening(const ForceModel& forces, double half_step, Work& work) const {
+  if (const SparseField* change = constraint_->opening_change())
+    work.damping_loss -= half_step * power_of_damping(force_, forces.position_force(), *change);
 }
 
 /// Damping works with the velocity at the ends of a step, but without what a constraint's kicks, counted
@@ -117,8 +119,7 @@ void Verlet::keep_damping(const ForceModel& forces, Vec3Field& damping) const {
 /// next kick, and nothing has gone so fast.
 double Verlet::closing_correction(const ForceModel& forces, double step) {
   if (!constraint_ || !forces.has_damping_loss() || !constraint_->closing_change()) return 0;
-  keep_damping(forces, closing_damping_);
-  return 0.5 * step * dot(closing_damping_.flat(), constraint_->closing_change()->flat());
+  return 0.5 * step * power_of_damping(force_, forces.position_force(), *constraint_->closing_change());
 }
 
 void Verlet::evaluate(ForceModel& forces, const ClothState& state) {

@@ -79,13 +79,12 @@ class Verlet : public Integrator {
   int finish_predicted(ForceModel& forces, const StepTimes& times, ClothState& state, Work& work);
   /// Takes from `work` what the damping that is known did at the opening, as far as the constraint had
   /// changed the velocity.
-  void correct_opening(double half_step, Work& work) const;
-  void keep_damping(const ForceModel& forces, Vec3Field& damping) const;
+  void correct_opening(const ForceModel& forces, double half_step, Work& work) const;
 
   DriftConstraint* constraint_ = nullptr;
   Work power_;                         ///< at the end of the last step
   Vec3Field force_;                    ///< p - D v, N; used only where has_damping()
-  Vec3Field opening_damping_;          ///< -D v in the opening kick, N; used only with a constraint
+  Vec3Field opening_force_;            ///< N, of a step with predicted velocity
   double closing_correction_ = 0;      ///< J, of the constraint's part of the damping loss, last step
   bool holds_position_force_ = false;  ///< the force model was last updated at the state
   bool is_open_ = false;               ///< open_step() was the last call
@@ -100,10 +99,12 @@ class Verlet : public Integrator {
   void finish_corrected(ForceModel& forces, double half_step, ClothState& state);
 
   EndVelocity end_;
-  Vec3Field closing_damping_;  ///< -D v in the closing kick, N; used only with a constraint
-  Vec3Field opening_force_;    ///< N, of a step with predicted velocity
   Vec3Field half_velocity_;    ///< m/s, of a step with corrected velocity
   VelocitySolver solver_;
 };
+
+/// W, of the damping - D v as far as particles move by `change` (m/s): `force` is that of positions and
+/// damping, `position_force` that of positions alone.
+double power_of_damping(const Vec3Field& force, const Vec3Field& position_force, const SparseField& change);
 
 }  // namespace cloth

@@ -76,9 +76,12 @@ void GridRounds::take_weights(const std::vector<double>& inverse_mass) {
   preconditioner_.take_weights();
 }
 
-void GridRounds::begin(const TensionTask& task, const std::vector<double>& inverse_mass,
-                       const std::vector<double>& tension, const Vec3Field& position) {
+void GridRounds::begin(const TensionTask& task, const TensionProblem& problem) {
   task_ = task;
+  tension_ = &problem.tension, position_ = &problem.position;
+  const std::vector<double>&tension = tension_->values(), &inverse_mass = problem.inverse_mass;
+  const Vec3Field& position = *position_;
+  if (!problem.from.is_everywhere()) problem.from.everywhere() = position;
   take_weights(inverse_mass);
   const double largest = *std::max_element(inverse_mass.begin(), inverse_mass.end());
   unit_ = task.time_step * task.time_step * (largest > 0 ? largest : 1);
@@ -99,7 +102,9 @@ void GridRounds::begin(const TensionTask& task, const std::vector<double>& inver
   moved_ = {0, plan_.rows};
 }
 
-void GridRounds::end(std::vector<double>& tension, Vec3Field& position) const {
+void GridRounds::end() {
+  std::vector<double>& tension = tension_->write();
+  Vec3Field& position = *position_;
   const AlignedDoubles* from[] = {&x_, &y_, &z_};
   double* to[] = {position.x(), position.y(), position.z()};
   for (int row = 0; row < plan_.rows; ++row)
@@ -113,6 +118,7 @@ void GridRounds::end(std::vector<double>& tension, Vec3Field& position) const {
       double* there = tension.data() + family.plan.first_spring + static_cast<std::ptrdiff_t>(row) * width;
       for (int c = 0; c < width; ++c) there[c] = here[c] / unit_;
     }
+  tension_->list_held();
 }
 
 GridNodes GridRounds::nodes() {
@@ -424,10 +430,8 @@ int GridRounds::solve_together() {
   return iterations;
 }
 
-std::unique_ptr<TensionRounds> make_tension_rounds(const std::vector<TensionSpring>& springs,
-                                                   const ClothSystem& system) {
-  if (const auto grid = plan_grid(springs, system)) return std::make_unique<GridRounds>(*grid);
-  return make_line_rounds(springs, system);
+std::unique_ptr<TensionRounds> make_grid_rounds(const GridPlan& plan) {
+  return std::make_unique<GridRounds>(plan);
 }
 
 }  // namespace cloth

@@ -14,12 +14,11 @@ class GridRounds : public TensionRounds {
  public:
   explicit GridRounds(const GridPlan& plan);
 
-  void begin(const TensionTask& task, const std::vector<double>& inverse_mass,
-             const std::vector<double>& tension, const Vec3Field& position) override;
+  void begin(const TensionTask& task, const TensionProblem& problem) override;
   TensionResidual evaluate() override;
   void sweep_lines(bool backwards) override;
   int solve_together() override;
-  void end(std::vector<double>& tension, Vec3Field& position) const override;
+  void end() override;
 
  private:
   using Values = AlignedFloats FamilyEquations::*;
@@ -49,6 +48,8 @@ class GridRounds : public TensionRounds {
   const TensionKernels& kernels_;
   LinePreconditioner preconditioner_;
   TensionTask task_;
+  SpringTensions* tension_ = nullptr;
+  Vec3Field* position_ = nullptr;
   double unit_ = 0;                   ///< m/N: (time step)^2 times the largest inverse mass
   std::vector<double> inverse_mass_;  ///< 1/kg, of the present weights
   AlignedDoubles x_, y_, z_, weight_;

@@ -1,7 +1,10 @@
-// TensionRounds for any springs: lines one after the other, only active springs.
+// TensionRounds for any springs: lines one after the other, and only what is near springs that are over their
+// limit or have a tension. Where nothing has moved, nothing is looked at again.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <utility>
 
 #include "cloth/sums.h"
 #include "limiter/tension_rounds.h"
@@ -9,24 +12,54 @@
 namespace cloth {
 namespace {
 
+/// Springs in the order of their lines. A place is an index into that order.
+struct PlacedSprings {
+  std::vector<std::uint32_t> spring, line;   ///< of each place
+  std::vector<std::uint32_t> place;          ///< of each spring
+  std::vector<std::uint32_t> around, begin;  ///< places of the springs at each particle, from begin on
+};
+
+PlacedSprings placed_springs(std::span<const TensionSpring> springs, const ClothSystem& system) {
+  const SpringLines lines = spring_lines({springs.begin(), springs.end()}, system);
+  PlacedSprings placed;
+  placed.place.resize(springs.size());
+  for (std::size_t line = 0; line < lines.count(); ++line)
+    for (std::size_t k = lines.begin[line]; k < lines.begin[line + 1]; ++k) {
+      placed.place[lines.springs[k]] = static_cast<std::uint32_t>(placed.spring.size());
+      placed.spring.push_back(static_cast<std::uint32_t>(lines.springs[k]));
+      placed.line.push_back(static_cast<std::uint32_t>(line));
+    }
+  const auto particles = static_cast<std::size_t>(system.size());
+  placed.begin.assign(particles + 2, 0);
+  for (const TensionSpring& spring : springs) ++placed.begin[spring.first + 2], ++placed.begin[spring.second + 2];
+  for (std::size_t i = 2; i < placed.begin.size(); ++i) placed.begin[i] += placed.begin[i - 1];
+  placed.around.resize(2 * springs.size());
+  for (std::size_t s = 0; s < springs.size(); ++s)
+    for (const std::size_t end : {springs[s].first, springs[s].second})
+      placed.around[placed.begin[end + 1]++] = placed.place[s];
+  return placed;
+}
+
 class LineRounds : public TensionRounds {
  public:
-  LineRounds(const std::vector<TensionSpring>& springs, const ClothSystem& system)
+  LineRounds(std::span<const TensionSpring> springs, const ClothSystem& system)
       : springs_(springs),
-        lines_(spring_lines(springs, system)),
+        placed_(placed_springs(springs, system)),
+        is_candidate_(springs.size(), 0),
+        is_moved_(static_cast<std::size_t>(system.size()), 0),
         node_(static_cast<std::size_t>(system.size())) {}
 
-  void begin(const TensionTask& task, const std::vector<double>& inverse_mass,
-             const std::vector<double>& tension, const Vec3Field& position) override;
+  void begin(const TensionTask& task, const TensionProblem& problem) override;
   TensionResidual evaluate() override;
   void sweep_lines(bool backwards) override;
   int solve_together() override;
-  void end(std::vector<double>& tension, Vec3Field& position) const override;
+  void end() override;
 
  private:
   /// A spring that is over its limit or has a tension, and its equation.
   struct Active {
     std::size_t spring, first, second;
+    std::uint32_t place;
     double both;          ///< w_first + w_second
     Vec3 direction;       ///< a
     double over;          ///< C less what the softness allows
@@ -35,11 +68,14 @@ class LineRounds : public TensionRounds {
     bool linked = false;  ///< to the one before it
   };
 
-  bool make_active(std::size_t spring, Active& active) const;
+  void add_candidate(std::uint32_t place);
+  void add_neighbours_of_moved();
+  bool is_over(std::size_t spring) const;
+  bool make_active(std::uint32_t place, Active& active) const;
   void link(const Active& before, Active& active) const;
-  void append_active(std::size_t line, std::vector<Active>& list) const;
-  void sweep_line(std::size_t line);
-  void move(const Active& active, double tension);
+  void append_active(std::uint32_t place, std::vector<Active>& list) const;
+  void sweep_line(std::size_t begin, std::size_t end);
+  void move(std::size_t particle, const Vec3& shift);
   void precondition(const std::vector<double>& residual, std::vector<double>& result) const;
   void pull(const std::vector<double>& tension);
   double multiply(const std::vector<double>& tension, double ridge, std::vector<double>& result) const;
@@ -47,43 +83,97 @@ class LineRounds : public TensionRounds {
   void take_step();
   double square() const { return task_.time_step * task_.time_step; }
 
-  std::vector<TensionSpring> springs_;
-  SpringLines lines_;
-  TensionTask task_;
-  std::vector<double> weight_;  ///< inverse masses
-  std::vector<double> tension_;
-  Vec3Field position_;
+  std::span<const TensionSpring> springs_;
+  PlacedSprings placed_;
 
+  // Of the present solve.
+  TensionTask task_;
+  const std::vector<double>* weight_ = nullptr;  ///< inverse masses
+  std::vector<double>* tension_ = nullptr;
+  SpringTensions* tensions_ = nullptr;
+  Vec3Field* position_ = nullptr;
+  SparseField* from_ = nullptr;
+
+  std::vector<std::uint32_t> candidates_;  ///< places that may be active; ascending after evaluate()
+  std::vector<std::uint8_t> is_candidate_;
+  std::vector<std::uint32_t> moved_;  ///< particles, since the last evaluation
+  std::vector<std::uint8_t> is_moved_;
   std::vector<Active> active_;  ///< of the last evaluation, line by line
   std::vector<Active> along_;   ///< of one line
   std::vector<double> step_, residual_, solved_, direction_, product_;
-  std::vector<Vec3> node_;  ///< w J^T of tensions
+  std::vector<Vec3> node_;  ///< J^T of tensions, at the ends of active springs
 };
 
-void LineRounds::begin(const TensionTask& task, const std::vector<double>& inverse_mass,
-                       const std::vector<double>& tension, const Vec3Field& position) {
+void LineRounds::begin(const TensionTask& task, const TensionProblem& problem) {
   task_ = task;
-  weight_ = inverse_mass;
-  tension_ = tension;
-  position_ = position;
+  weight_ = &problem.inverse_mass;
+  tensions_ = &problem.tension, tension_ = &problem.tension.write();
+  position_ = &problem.position, from_ = &problem.from;
+  const auto take = [this](std::size_t s) {
+    const bool is_free = (*weight_)[springs_[s].first] + (*weight_)[springs_[s].second] > 0;
+    if (is_free) add_candidate(placed_.place[s]);
+    else (*tension_)[s] = 0;
+  };
+  if (problem.tension.is_few())
+    for (const std::uint32_t s : problem.tension.held()) take(s);
+  else
+    for (std::size_t s = 0; s < springs_.size(); ++s)
+      if ((*tension_)[s] > 0) take(s);
+  for (const std::uint32_t s : problem.over) add_candidate(placed_.place[s]);
+  std::sort(candidates_.begin(), candidates_.end());
 }
 
-void LineRounds::end(std::vector<double>& tension, Vec3Field& position) const {
-  tension = tension_;
-  position = position_;
+void LineRounds::end() {
+  for (const std::uint32_t i : moved_) is_moved_[i] = 0;
+  for (std::uint32_t& place : candidates_) {
+    is_candidate_[place] = 0;
+    place = placed_.spring[place];
+  }
+  moved_.clear();
+  tensions_->list_held(candidates_);
+  candidates_.clear();
+}
+
+void LineRounds::add_candidate(std::uint32_t place) {
+  if (is_candidate_[place]) return;
+  is_candidate_[place] = 1;
+  candidates_.push_back(place);
+}
+
+bool LineRounds::is_over(std::size_t s) const {
+  const TensionSpring& spring = springs_[s];
+  const Vec3 d = (*position_)[spring.second] - (*position_)[spring.first];
+  return d.squaredNorm() > spring.limit * spring.limit;
+}
+
+void LineRounds::add_neighbours_of_moved() {
+  const std::size_t count = candidates_.size();
+  for (const std::uint32_t i : moved_) {
+    is_moved_[i] = 0;
+    for (std::uint32_t k = placed_.begin[i]; k < placed_.begin[i + 1]; ++k) {
+      const std::uint32_t place = placed_.around[k];
+      if (!is_candidate_[place] && is_over(placed_.spring[place])) add_candidate(place);
+    }
+  }
+  moved_.clear();
+  const auto middle = candidates_.begin() + static_cast<std::ptrdiff_t>(count);
+  std::sort(middle, candidates_.end());
+  std::inplace_merge(candidates_.begin(), middle, candidates_.end());
 }
 
 /// False where the spring is not active.
-bool LineRounds::make_active(std::size_t s, Active& active) const {
+bool LineRounds::make_active(std::uint32_t place, Active& active) const {
+  const std::size_t s = placed_.spring[place];
   const TensionSpring& spring = springs_[s];
   const std::size_t i = spring.first, j = spring.second;
-  const double both = weight_[i] + weight_[j];
+  const double both = (*weight_)[i] + (*weight_)[j];
   if (!(both > 0)) return false;
-  const Vec3 d = position_[j] - position_[i];
-  const double length = d.norm();
-  const double over = length - spring.limit - square() * task_.softness * both * tension_[s];
-  if (!(over > 0) && !(tension_[s] > 0)) return false;
+  const Vec3 d = (*position_)[j] - (*position_)[i];
+  const double length = d.norm(), tension = (*tension_)[s];
+  const double over = length - spring.limit - square() * task_.softness * both * tension;
+  if (!(over > 0) && !(tension > 0)) return false;
   active.spring = s, active.first = spring.first, active.second = spring.second;
+  active.place = place;
   active.both = both, active.over = over;
   active.direction = length > 0 ? Vec3(d / length) : Vec3(Vec3::Zero());
   return true;
@@ -94,48 +184,65 @@ void LineRounds::link(const Active& before, Active& active) const {
   const bool first = active.first == before.first || active.first == before.second;
   const std::size_t joint = first ? active.first : active.second;
   const double sign = (joint == active.first) == (joint == before.first) ? 1 : -1;
-  active.link = sign * weight_[joint] * before.direction.dot(active.direction);
+  active.link = sign * (*weight_)[joint] * before.direction.dot(active.direction);
   active.linked = true;
 }
 
-/// Appends the active springs of a line.
-void LineRounds::append_active(std::size_t line, std::vector<Active>& list) const {
-  bool follows = false;  // the spring before it is active
-  for (std::size_t k = lines_.begin[line]; k < lines_.begin[line + 1]; ++k) {
-    Active active{};
-    const bool is_active = make_active(lines_.springs[k], active);
-    if (is_active && follows) link(list.back(), active);
-    if (is_active) list.push_back(active);
-    follows = is_active;
-  }
+void LineRounds::append_active(std::uint32_t place, std::vector<Active>& list) const {
+  Active active{};
+  if (!make_active(place, active)) return;
+  if (!list.empty() && list.back().place + 1 == place && placed_.line[place] == placed_.line[place - 1])
+    link(list.back(), active);
+  list.push_back(active);
 }
 
+/// Springs that are no longer active are candidates no more; a neighbour that moves brings them back.
 TensionResidual LineRounds::evaluate() {
-  TensionResidual found;
+  add_neighbours_of_moved();
   active_.clear();
-  for (std::size_t line = 0; line < lines_.count(); ++line) append_active(line, active_);
+  for (const std::uint32_t place : candidates_) {
+    const std::size_t count = active_.size();
+    append_active(place, active_);
+    is_candidate_[place] = active_.size() > count;
+  }
+  std::erase_if(candidates_, [this](std::uint32_t place) { return !is_candidate_[place]; });
+  TensionResidual found;
   for (const Active& active : active_) {
     const double relative = active.over / springs_[active.spring].rest_length;
     found.excess = std::max(found.excess, relative);
-    if (tension_[active.spring] > 0) found.slack = std::max(found.slack, -relative);
+    if ((*tension_)[active.spring] > 0) found.slack = std::max(found.slack, -relative);
   }
   return found;
 }
 
-void LineRounds::move(const Active& active, double tension) {
-  const std::size_t i = active.first, j = active.second;
-  const Vec3 shift = square() * tension * active.direction;
-  position_.add(i, weight_[i] * shift);
-  position_.add(j, -weight_[j] * shift);
+void LineRounds::move(std::size_t i, const Vec3& shift) {
+  if (!is_moved_[i]) {
+    is_moved_[i] = 1;
+    moved_.push_back(static_cast<std::uint32_t>(i));
+    if (!from_->has(i)) from_->set(i, (*position_)[i]);
+  }
+  position_->add(i, shift);
 }
 
 void LineRounds::sweep_lines(bool backwards) {
-  for (std::size_t k = 0; k < lines_.count(); ++k) sweep_line(backwards ? lines_.count() - 1 - k : k);
+  const auto line = [this](std::size_t k) { return placed_.line[candidates_[k]]; };
+  const std::size_t count = candidates_.size();
+  if (backwards)
+    for (std::size_t end = count, begin; end > 0; end = begin) {
+      for (begin = end - 1; begin > 0 && line(begin - 1) == line(end - 1);) --begin;
+      sweep_line(begin, end);
+    }
+  else
+    for (std::size_t begin = 0, end; begin < count; begin = end) {
+      for (end = begin + 1; end < count && line(end) == line(begin);) ++end;
+      sweep_line(begin, end);
+    }
 }
 
-void LineRounds::sweep_line(std::size_t line) {
+/// Of the candidates [begin, end), all of one line.
+void LineRounds::sweep_line(std::size_t begin, std::size_t end) {
   along_.clear();
-  append_active(line, along_);
+  for (std::size_t k = begin; k < end; ++k) append_active(candidates_[k], along_);
   const double per_square = 1 / square();
   step_.resize(along_.size());
   for (std::size_t k = 0; k < along_.size(); ++k) {
@@ -150,10 +257,12 @@ void LineRounds::sweep_line(std::size_t line) {
   for (std::size_t k = along_.size(); k-- > 0;) {
     if (k + 1 < along_.size() && along_[k + 1].linked)
       step_[k] -= along_[k].pivot * along_[k + 1].link * step_[k + 1];
-    double& tension = tension_[along_[k].spring];
+    double& tension = (*tension_)[along_[k].spring];
     step_[k] = std::max(step_[k], -tension);
     tension += step_[k];
-    move(along_[k], step_[k]);
+    const Vec3 shift = square() * step_[k] * along_[k].direction;
+    for (const auto& [i, sign] : {std::pair{along_[k].first, 1}, std::pair{along_[k].second, -1}})
+      if ((*weight_)[i] > 0) move(i, sign * (*weight_)[i] * shift);
   }
 }
 
@@ -166,15 +275,14 @@ void LineRounds::precondition(const std::vector<double>& residual, std::vector<d
     if (active_[k].linked) result[k - 1] -= active_[k - 1].pivot * active_[k].link * result[k];
 }
 
-/// node_ <- W J^T tension
+/// node_ <- J^T tension
 void LineRounds::pull(const std::vector<double>& tension) {
-  std::fill(node_.begin(), node_.end(), Vec3::Zero());
+  for (const Active& active : active_) node_[active.first] = node_[active.second] = Vec3::Zero();
   for (std::size_t k = 0; k < active_.size(); ++k) {
     const Vec3 force = tension[k] * active_[k].direction;
     node_[active_[k].first] += force;
     node_[active_[k].second] -= force;
   }
-  for (std::size_t i = 0; i < node_.size(); ++i) node_[i] *= weight_[i];
 }
 
 /// result <- (J W J^T + ridge diagonal) tension, after pull(tension). Returns tension . result.
@@ -182,7 +290,8 @@ double LineRounds::multiply(const std::vector<double>& tension, double ridge,
                             std::vector<double>& result) const {
   for (std::size_t k = 0; k < active_.size(); ++k) {
     const Active& active = active_[k];
-    const Vec3 difference = node_[active.first] - node_[active.second];
+    const Vec3 difference =
+        (*weight_)[active.first] * node_[active.first] - (*weight_)[active.second] * node_[active.second];
     result[k] = active.direction.dot(difference) + ridge * active.both * tension[k];
   }
   return dot(tension, result);
@@ -235,7 +344,7 @@ void LineRounds::take_step() {
   bool clipped = false;
   double gain = 0, length = 1;
   for (std::size_t k = 0; k < active_.size(); ++k) {
-    const double least = -tension_[active_[k].spring];
+    const double least = -(*tension_)[active_[k].spring];
     if (step_[k] < least) step_[k] = least, clipped = true;
     gain += step_[k] * active_[k].over;
   }
@@ -246,17 +355,20 @@ void LineRounds::take_step() {
     length = 1;
     for (std::size_t k = 0; k < active_.size(); ++k) {
       const Active& active = active_[k];
-      step_[k] = std::max(steepest_share * active.over / (square() * active.both), -tension_[active.spring]);
+      step_[k] = std::max(steepest_share * active.over / (square() * active.both), -(*tension_)[active.spring]);
     }
     pull(step_);
   }
   for (std::size_t k = 0; k < active_.size(); ++k) {
-    double& tension = tension_[active_[k].spring];
+    double& tension = (*tension_)[active_[k].spring];
     tension = std::max(0.0, tension + length * step_[k]);
   }
   const double shift = length * square();
-  for (std::size_t i = 0; i < node_.size(); ++i)
-    if (weight_[i] > 0) position_.add(i, shift * node_[i]);
+  for (const Active& active : active_)
+    for (const std::size_t i : {active.first, active.second}) {
+      if ((*weight_)[i] > 0) move(i, shift * (*weight_)[i] * node_[i]);
+      node_[i] = Vec3::Zero();  // moved once, however many springs meet there
+    }
 }
 
 int LineRounds::solve_together() {
@@ -268,7 +380,7 @@ int LineRounds::solve_together() {
 
 }  // namespace
 
-std::unique_ptr<TensionRounds> make_line_rounds(const std::vector<TensionSpring>& springs,
+std::unique_ptr<TensionRounds> make_line_rounds(std::span<const TensionSpring> springs,
                                                 const ClothSystem& system) {
   return std::make_unique<LineRounds>(springs, system);
 }

@@ -9,8 +9,8 @@
 namespace cloth {
 namespace {
 
-/// The kinetic energy that velocity changes add to a cloth whose velocity is `velocity` + share * change when
-/// they come: sum m change . (velocity + share change), J.
+/// The kinetic energy that a change of velocities adds to a cloth whose velocity is `velocity` + share *
+/// change when it comes: sum m change . (velocity + share change), J.
 double work_of_changes(const ClothSystem& system, const Vec3Field& change, const Vec3Field& velocity,
                        double share) {
   const double* by[] = {change.x(), change.y(), change.z()};
@@ -22,8 +22,32 @@ double work_of_changes(const ClothSystem& system, const Vec3Field& change, const
   return work;
 }
 
-void size_like(const Vec3Field& field, Vec3Field& result) {
-  if (result.size() != field.size()) result = Vec3Field(field.size());
+double work_of_changes(const ClothSystem& system, const SparseField& change, const Vec3Field& velocity,
+                       double share) {
+  if (change.is_everywhere()) return work_of_changes(system, change.values(), velocity, share);
+  double work = 0;
+  for (const std::uint32_t i : change.particles())
+    work += system.mass[i] * change[i].dot(velocity[i] + share * change[i]);
+  return work;
+}
+
+std::span<double> all_of(Vec3Field& field) {
+  return field.flat();
+}
+std::span<double> all_of(SparseField& field) {
+  return field.everywhere().flat();
+}
+
+/// speed += (to - from) / time step, where particles have moved.
+template <class Field>
+void add_speed(const SparseField& from, const Vec3Field& to, double time_step, Field& speed) {
+  if (!from.is_everywhere()) {
+    for (const std::uint32_t i : from.particles()) speed.add(i, (to[i] - from[i]) / time_step);
+    return;
+  }
+  const std::span<const double> before = from.values().flat(), after = to.flat();
+  const std::span<double> all = all_of(speed);
+  for (std::size_t k = 0; k < all.size(); ++k) all[k] += (after[k] - before[k]) / time_step;
 }
 
 }  // namespace
@@ -32,15 +56,14 @@ StepLimiter::StepLimiter(const Deformation& deformation, const ClothSystem& syst
     : deformation_(deformation), system_(&system), limiter_(deformation, system, unreachable) {
   if (deformation.solver != "auto") return;
   tensions_.emplace(deformation, system, unreachable);
-  tension_.assign(tensions_->springs().size(), 0.0);
+  tension_ = held_ = SpringTensions(tensions_->springs().size());
 }
 
 void StepLimiter::set_tension(const std::vector<double>& tension) {
   if (tension.size() == tension_.size())
-    tension_ = tension;
+    tension_ = SpringTensions(tension);
   else
-    std::fill(tension_.begin(), tension_.end(), 0.0);
-  holds_ = std::any_of(tension_.begin(), tension_.end(), [](double t) { return t > 0; });
+    tension_.clear();
 }
 
 void StepLimiter::begin(double time_step) {
@@ -57,15 +80,23 @@ void StepLimiter::begin_step(double time_step, const ClothState& state, bool dri
 }
 
 bool StepLimiter::holds() const {
-  return holds_ && !tensions_->unreachable();
+  return tension_.any() && !tensions_->unreachable();
 }
 
-/// velocity += duration W J^T tension; leaves the force in pull_.
-void StepLimiter::pull(double duration, const std::vector<double>& tension, ClothState& state) {
-  size_like(state.position, pull_);
-  pull_.fill(0);
+/// velocity and change += duration W J^T tension
+void StepLimiter::pull(double duration, const SpringTensions& tension, SparseField& change,
+                       ClothState& state) {
+  pull_.clear(state.position.size());
   tensions_->add_force(tension, state.position, pull_);
-  add_acceleration(*system_, duration, pull_, state.velocity);
+  if (pull_.is_everywhere()) {
+    add_acceleration(*system_, duration, pull_.values(), state.velocity);
+    add_acceleration(*system_, duration, pull_.values(), change.everywhere());
+    return;
+  }
+  for (const std::uint32_t i : pull_.particles()) {
+    const Vec3 kick = duration * system_->inverse_mass[i] * pull_[i];
+    state.velocity.add(i, kick), change.add(i, kick);
+  }
 }
 
 void StepLimiter::before_kick(double kick, double drift, ClothState& state) {
@@ -74,10 +105,8 @@ void StepLimiter::before_kick(double kick, double drift, ClothState& state) {
   opened_ = holds();
   if (!opened_) return;
   tensions_->hold(tension_, time_step_, held_);
-  pull(kick, held_, state);
-  size_like(state.position, change_);
-  change_.fill(0);
-  add_acceleration(*system_, kick, pull_, change_);
+  change_.clear(state.position.size());
+  pull(kick, held_, change_, state);
 }
 
 /// Moves the positions to satisfy the rate and reports the rest. False: they did already.
@@ -89,18 +118,18 @@ bool StepLimiter::move(ClothState& state) {
                           (!tensions_ || report_.excess == 0 || report_.excess <= target_residual(state));
     if (is_small) return false;
   }
-  drifted_ = state.position;
   if (!tensions_) {
+    drifted_.clear(state.position.size());
+    drifted_.everywhere() = state.position;
     add_report(limiter_.apply(*system_, time_step_, state));
     return true;
   }
-  if (opened_) tension_ = held_;
+  if (opened_) tension_.copy(held_);
   const TensionReport found =
       tensions_->solve(*system_, time_step_, tension_, state.position, target_residual(state));
   add_report(
       {.sweeps = found.line_sweeps, .direct_iterations = found.factorisations, .excess = found.excess});
-  holds_ = std::any_of(tension_.begin(), tension_.end(), [](double t) { return t > 0; });
-  add_speed_of_move(state);
+  add_speed(moved_from(), state.position, time_step_, state.velocity);
   return true;
 }
 
@@ -119,18 +148,10 @@ void StepLimiter::add_report(const LimiterReport& found) {
   report_.excess = found.excess;
 }
 
-void StepLimiter::add_speed_of_move(ClothState& state) const {
-  const std::span<const double> from = drifted_.flat();
-  const auto to = state.position.flat(), speed = state.velocity.flat();
-  for (std::size_t k = 0; k < to.size(); ++k) speed[k] += (to[k] - from[k]) / time_step_;
-}
-
 /// The change of velocities by the last move.
 void StepLimiter::find_change(const ClothState& state) {
-  size_like(state.position, change_);
-  const auto change = change_.flat();
-  const std::span<const double> to = state.position.flat(), from = drifted_.flat();
-  for (std::size_t k = 0; k < change.size(); ++k) change[k] = (to[k] - from[k]) / time_step_;
+  change_.clear(state.position.size());
+  add_speed(moved_from(), state.position, time_step_, change_);
 }
 
 /// The work of the opening kick and of limiting is taken at the beginning of the step, that of the closing
@@ -142,12 +163,8 @@ void StepLimiter::after_drift(double closing_kick, ClothState& state) {
   closing_kick_ = closing_kick;
   changed_ = moved || opened_;
   if (changed_) {
-    size_like(state.position, change_);
-    if (!opened_) change_.fill(0);
-    if (moved) {
-      const auto change = change_.flat(), to = state.position.flat(), from = drifted_.flat();
-      for (std::size_t k = 0; k < change.size(); ++k) change[k] += (to[k] - from[k]) / time_step_;
-    }
+    if (!opened_) change_.clear(state.position.size());
+    if (moved) add_speed(moved_from(), state.position, time_step_, change_);
     *work_ += closing_kick > 0 ? work_of_changes(*system_, change_, start_velocity_, 0.5)
                                : 0.5 * (work_of_changes(*system_, change_, start_velocity_, 0) +
                                         work_of_changes(*system_, change_, state.velocity, 0));
@@ -159,16 +176,12 @@ void StepLimiter::close(ClothState& state) {
   closed_ = closing_kick_ > 0 && holds();
   if (!closed_) return;
   tensions_->hold(tension_, time_step_, held_);
-  pull(closing_kick_, held_, state);
-  size_like(state.position, closing_);
-  closing_.fill(0);
-  add_acceleration(*system_, closing_kick_, pull_, closing_);
+  closing_.clear(state.position.size());
+  pull(closing_kick_, held_, closing_, state);
 }
 
 void StepLimiter::forget_tensions() {
-  if (!holds_) return;
-  std::fill(tension_.begin(), tension_.end(), 0.0);
-  holds_ = false;
+  tension_.clear();
 }
 
 void StepLimiter::end_step(const ClothState& state) {

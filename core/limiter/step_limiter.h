@@ -30,8 +30,8 @@ class StepLimiter : public DriftConstraint {
   void after_drift(double closing_kick, ClothState& state) override;
   void forget_tensions() override;
   void close(ClothState& state) override;
-  const Vec3Field* opening_change() const override { return changed_ ? &change_ : nullptr; }
-  const Vec3Field* closing_change() const override { return closed_ ? &closing_ : nullptr; }
+  const SparseField* opening_change() const override { return changed_ ? &change_ : nullptr; }
+  const SparseField* closing_change() const override { return closed_ ? &closing_ : nullptr; }
   /// After the closing kick: adds its part to work().
   void end_step(const ClothState& state);
 
@@ -59,7 +59,7 @@ class StepLimiter : public DriftConstraint {
   std::optional<double> work() const { return work_; }
 
   /// N, with which the next step starts; part of a checkpoint.
-  const std::vector<double>& tension() const { return tension_; }
+  const std::vector<double>& tension() const { return tension_.values(); }
   void set_tension(const std::vector<double>& tension);
 
  private:
@@ -67,27 +67,26 @@ class StepLimiter : public DriftConstraint {
   bool move(ClothState& state);
   double target_residual(const ClothState& state) const;
   void add_report(const LimiterReport& found);
-  void add_speed_of_move(ClothState& state) const;
+  const SparseField& moved_from() const { return tensions_ ? tensions_->moved_from() : drifted_; }
   void find_change(const ClothState& state);
-  void pull(double duration, const std::vector<double>& tension, ClothState& state);
+  void pull(double duration, const SpringTensions& tension, SparseField& change, ClothState& state);
 
   Deformation deformation_;
   const ClothSystem* system_;
   DeformationLimiter limiter_;
   std::optional<TensionSolver> tensions_;  ///< none: solver "sweeps" or "direct"
-  std::vector<double> tension_;            ///< N, at the end of the last step
-  std::vector<double> held_;               ///< N, in the present step's latest kick
-  bool holds_ = false;                     ///< any of tension_ is above 0
+  SpringTensions tension_;                 ///< N, at the end of the last step
+  SpringTensions held_;                    ///< N, in the present step's latest kick
 
   // Of the present step.
   double time_step_ = 0;  ///< s, of the present drift
   bool drifts_with_end_velocity_ = false;
   double closing_kick_ = 0;     ///< s
   Vec3Field start_velocity_;    ///< m/s, before the first kick
-  Vec3Field drifted_;           ///< m
-  Vec3Field change_, closing_;  ///< m/s, by opening kick and limiting; by the closing kick
+  SparseField drifted_;           ///< m, without tensions_: before limiting
+  SparseField change_, closing_;  ///< m/s, by opening kick and limiting; by the closing kick
   bool opened_ = false, changed_ = false, closed_ = false;
-  Vec3Field pull_;  ///< N, scratch
+  SparseField pull_;  ///< N, scratch
   LimiterReport report_;
   std::optional<double> work_;
 };

@@ -7,9 +7,14 @@
 #pragma once
 
 #include <algorithm>
+#include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
+#include "geometry/sparse_field.h"
+#include "limiter/grid_plan.h"
+#include "limiter/spring_tensions.h"
 #include "limiter/tension_springs.h"
 
 namespace cloth {
@@ -28,6 +33,15 @@ struct TensionTask {
   /// Compliance of the limit: C = h^2 softness (w_first + w_second) t where there is a tension, and the
   /// residual is that of this equation. With a softness above 0 it has a solution wherever the pins are.
   double softness = 0;
+};
+
+/// What a solve reads and changes. Positions and tensions have their new values after TensionRounds::end().
+struct TensionProblem {
+  const std::vector<double>& inverse_mass;
+  SpringTensions& tension;
+  Vec3Field& position;
+  SparseField& from;                  ///< gets the first positions of particles that are moved
+  std::span<const std::uint32_t> over;  ///< the springs over their limit, those between two pins aside
 };
 
 // Constants of both implementations.
@@ -50,8 +64,7 @@ class TensionRounds {
  public:
   virtual ~TensionRounds() = default;
 
-  virtual void begin(const TensionTask& task, const std::vector<double>& inverse_mass,
-                     const std::vector<double>& tension, const Vec3Field& position) = 0;
+  virtual void begin(const TensionTask& task, const TensionProblem& problem) = 0;
   virtual TensionResidual evaluate() = 0;
   /// For one line after the other: solves for its tensions together, clips those below 0 and moves its
   /// particles.
@@ -59,13 +72,14 @@ class TensionRounds {
   /// One Newton step for all tensions at the last evaluated positions, by conjugate gradients with the lines
   /// as preconditioner. Returns the iterations.
   virtual int solve_together() = 0;
-  virtual void end(std::vector<double>& tension, Vec3Field& position) const = 0;
+  virtual void end() = 0;
 };
 
-/// For grids whole families of lines side by side, for meshes line by line. The two agree to the tolerance.
-std::unique_ptr<TensionRounds> make_tension_rounds(const std::vector<TensionSpring>& springs,
-                                                   const ClothSystem& system);
-std::unique_ptr<TensionRounds> make_line_rounds(const std::vector<TensionSpring>& springs,
+/// For all springs of a grid: families of lines side by side. It does not ask for TensionProblem::over.
+std::unique_ptr<TensionRounds> make_grid_rounds(const GridPlan& plan);
+/// For any springs, and the only ones of a mesh: line by line, as long as springs that are over their limit or
+/// have a tension, and their neighbours, take. The two agree to the tolerance.
+std::unique_ptr<TensionRounds> make_line_rounds(std::span<const TensionSpring> springs,
                                                 const ClothSystem& system);
 
 }  // namespace cloth

@@ -19,6 +19,35 @@ constexpr double held_share = 0.5;
 /// Where the pins make the rate unreachable.
 constexpr double soft_springs = 3e-2;
 
+/// Calls visit(particle, force on it) for both ends of each spring that has a tension.
+template <class Visit>
+void each_pull(const std::vector<TensionSpring>& springs, const SpringTensions& tension,
+               const Vec3Field& position, const Visit& visit) {
+  const auto pull_ends = [&](std::size_t s) {
+    const std::size_t i = springs[s].first, j = springs[s].second;
+    const Vec3 d = position[j] - position[i];
+    const double length = d.norm();
+    if (!(length > 0)) return;
+    const Vec3 pull = (tension[s] / length) * d;
+    visit(i, pull), visit(j, -pull);
+  };
+  if (tension.is_few())
+    for (const std::uint32_t s : tension.held()) pull_ends(s);
+  else
+    for (std::size_t s = 0; s < springs.size(); ++s)
+      if (tension[s] > 0) pull_ends(s);
+}
+
+/// Moves all particles to where they were, of which all are told from then on.
+void put_back(SparseField& from, Vec3Field& position) {
+  if (from.is_everywhere()) {
+    position = from.values();
+    return;
+  }
+  for (const std::uint32_t i : from.particles()) position.set(i, from[i]);
+  from.everywhere() = position;
+}
+
 bool is_finite(const Vec3Field& field) {
   const double* x = field.flat().data();
   return ordered_sum(field.flat().size(), [x](std::size_t k) { return 0 * x[k]; }) == 0;
@@ -39,22 +68,18 @@ TensionSolver::TensionSolver(const Deformation& deformation, const ClothSystem& 
     hold_.push_back(lighter > 0 ? held_share * spring.limit / lighter : 0);
   }
   grid_ = plan_grid(springs_, system);
-  rounds_ = make_tension_rounds(springs_, system);
 }
 
-void TensionSolver::add_force(const std::vector<double>& tension, const Vec3Field& position,
+void TensionSolver::add_force(const SpringTensions& tension, const Vec3Field& position,
                               Vec3Field& force) const {
-  if (grid_) return add_grid_force(tension, position, force);
-  for (std::size_t s = 0; s < springs_.size(); ++s) {
-    if (!(tension[s] > 0)) continue;
-    const std::size_t i = springs_[s].first, j = springs_[s].second;
-    const Vec3 d = position[j] - position[i];
-    const double length = d.norm();
-    if (!(length > 0)) continue;
-    const Vec3 pull = (tension[s] / length) * d;
-    force.add(i, pull);
-    force.add(j, -pull);
-  }
+  if (grid_ && !tension.is_few()) return add_grid_force(tension.values(), position, force);
+  each_pull(springs_, tension, position, [&](std::size_t i, const Vec3& pull) { force.add(i, pull); });
+}
+
+void TensionSolver::add_force(const SpringTensions& tension, const Vec3Field& position,
+                              SparseField& force) const {
+  if (!tension.is_few()) return add_force(tension, position, force.everywhere());
+  each_pull(springs_, tension, position, [&](std::size_t i, const Vec3& pull) { force.add(i, pull); });
 }
 
 /// Row by row; rows without a tension are skipped.
@@ -76,39 +101,46 @@ void TensionSolver::add_grid_force(const std::vector<double>& tension, const Vec
   }
 }
 
-void TensionSolver::hold(const std::vector<double>& tension, double time_step,
-                         std::vector<double>& held) const {
-  held.assign(tension.size(), 0.0);
-  if (unreachable_) return;
+void TensionSolver::hold(const SpringTensions& tension, double time_step, SpringTensions& held) const {
   const double per_square = 1 / (time_step * time_step);
-  for (std::size_t s = 0; s < tension.size(); ++s) held[s] = std::min(tension[s], hold_[s] * per_square);
+  const auto part = [&](std::size_t s) { return std::min(tension[s], hold_[s] * per_square); };
+  held.clear();
+  if (unreachable_) return;
+  std::vector<double>& values = held.write();
+  if (!tension.is_few()) {
+    for (std::size_t s = 0; s < values.size(); ++s) values[s] = part(s);
+    return held.list_held();
+  }
+  std::vector<std::uint32_t> springs(tension.held().begin(), tension.held().end());
+  for (const std::uint32_t s : springs) values[s] = part(s);
+  held.list_held(springs);
 }
 
 /// Rounds until the residual is small enough or the bound on rounds is reached.
-void TensionSolver::run_rounds(const TensionTask& task, const ClothSystem& system,
-                               std::vector<double>& tension, Vec3Field& position, TensionReport& report) {
-  rounds_->begin(task, system.inverse_mass, tension, position);
-  TensionResidual residual = rounds_->evaluate();
-  int rounds = 0, rounds_to_aim = 0;
-  while (!residual.within(task.tolerance) && rounds < max_tension_rounds) {
+void TensionSolver::run_rounds(const TensionTask& task, TensionRounds& rounds, const TensionProblem& problem,
+                               TensionReport& report) const {
+  rounds.begin(task, problem);
+  TensionResidual residual = rounds.evaluate();
+  int count = 0, rounds_to_aim = 0;
+  while (!residual.within(task.tolerance) && count < max_tension_rounds) {
     if (residual.within(deformation_.tolerance) && ++rounds_to_aim > max_rounds_to_aim) break;
-    rounds_->sweep_lines(rounds % 2 == 1);
-    ++rounds, ++report.line_sweeps;
-    residual = rounds_->evaluate();
+    rounds.sweep_lines(count % 2 == 1);
+    ++count, ++report.line_sweeps;
+    residual = rounds.evaluate();
     if (residual.within(task.tolerance)) break;
-    report.cg_iterations += rounds_->solve_together();
-    residual = rounds_->evaluate();
+    report.cg_iterations += rounds.solve_together();
+    residual = rounds.evaluate();
   }
-  report.rounds += rounds;
+  report.rounds += count;
   report.excess = residual.excess, report.slack = residual.slack;
   report.converged = residual.within(deformation_.tolerance);
-  if (rounds > 0) rounds_->end(tension, position);
+  rounds.end();
 }
 
 /// Replaces positions and tensions by the nearest shape to the positions without tensions, and its
 /// multipliers.
 void TensionSolver::restart_from_nearest(const TensionTask& task, const ClothSystem& system,
-                                         std::vector<double>& tension, Vec3Field& position,
+                                         SpringTensions& tension, Vec3Field& position,
                                          TensionReport& report) {
   if (!nearest_) nearest_.emplace(deformation_, system);
   const double square = task.time_step * task.time_step;
@@ -119,55 +151,88 @@ void TensionSolver::restart_from_nearest(const TensionTask& task, const ClothSys
   report.factorisations = nearest_->find(system, task.tolerance, position, !unreachable_).iterations;
 
   const double unit = system.total_mass() / system.size() / square;  // of a multiplier, N/m
-  std::fill(tension.begin(), tension.end(), 0.0);
+  std::vector<double>& values = tension.write();
+  std::fill(values.begin(), values.end(), 0.0);
   std::size_t found = 0;
   for (std::size_t s = 0; s < springs_.size(); ++s) {
     const TensionSpring& spring = springs_[s];
     if (system.pinned[spring.first] && system.pinned[spring.second]) continue;
     const double slack = spring.limit - (position[spring.second] - position[spring.first]).norm();
     if (slack <= 0.5 * task.tolerance * spring.rest_length)
-      tension[s] = unit * nearest_->multipliers()[found];
+      values[s] = unit * nearest_->multipliers()[found];
     ++found;
   }
+  tension.list_held();
 }
 
-/// Whether no spring of a grid has a tension or is over its limit: most steps of a slack cloth end here.
-bool TensionSolver::is_inactive(const std::vector<double>& tension, Vec3Field& position) const {
-  if (!grid_) return false;
-  const double* t = tension.data();
-  if (ordered_sum(tension.size(), [t](std::size_t s) { return t[s]; }) != 0) return false;
+/// Finds over_. False: there are more than `most`, and not all of them are found.
+bool TensionSolver::find_over(const SpringTensions& tension, Vec3Field& position, std::size_t most) {
+  over_.clear();
+  if (grid_) return find_over_of_grid(tension.values(), position, most);
+  for (std::size_t s = 0; s < springs_.size(); ++s)
+    if (springs_[s].excess(position) > 0) over_.push_back(static_cast<std::uint32_t>(s));
+  return over_.size() <= most;
+}
+
+/// Looks at the springs of a row only where the longest is over the limit.
+bool TensionSolver::find_over_of_grid(const std::vector<double>& tension, Vec3Field& position,
+                                      std::size_t most) {
   const GridNodes nodes{position.x(), position.y(), position.z(), position.x()};  // weights are not used
   for (const GridFamily& family : grid_->families) {
     const std::ptrdiff_t offset = family.down * grid_->columns + family.across;
+    const auto width = static_cast<std::size_t>(family.width());
     for (int row = 0; row < family.rows; ++row) {
       const std::ptrdiff_t i = static_cast<std::ptrdiff_t>(row) * grid_->columns + family.begin;
-      const double longest = kernels_->measure_row(nodes, i, offset, t, family.width(), false).longest;
-      if (!(longest <= family.limit * family.limit)) return false;
+      const std::size_t first = family.first_spring + static_cast<std::size_t>(row) * width;
+      const double longest =
+          kernels_->measure_row(nodes, i, offset, tension.data() + first, family.width(), false).longest;
+      if (longest <= family.limit * family.limit) continue;
+      for (std::size_t s = first; s < first + width; ++s) {
+        const Vec3 d = position[springs_[s].second] - position[springs_[s].first];
+        if (d.squaredNorm() > family.limit * family.limit) over_.push_back(static_cast<std::uint32_t>(s));
+      }
+      if (over_.size() > most) return false;
     }
   }
   return true;
 }
 
-TensionReport TensionSolver::solve(const ClothSystem& system, double time_step, std::vector<double>& tension,
+TensionRounds& TensionSolver::rounds_for(bool few, const ClothSystem& system) {
+  const bool by_lines = few || !grid_;
+  std::unique_ptr<TensionRounds>& rounds = by_lines ? line_rounds_ : grid_rounds_;
+  if (!rounds) rounds = by_lines ? make_line_rounds(springs_, system) : make_grid_rounds(*grid_);
+  return *rounds;
+}
+
+TensionReport TensionSolver::solve(const ClothSystem& system, double time_step, SpringTensions& tension,
                                    Vec3Field& position, double target_residual) {
   TensionReport report;
+  from_.clear(position.size());
   if (!is_finite(position)) {
     report.excess = std::nan("");
     return report;
   }
-  if (is_inactive(tension, position)) {
+  const std::size_t most = grid_ ? SpringTensions::most(springs_.size()) : springs_.size();
+  const bool few = find_over(tension, position, most) && tension.is_few();
+  if (over_.empty() && !tension.any()) {
     report.converged = true;
     return report;
   }
   const TensionTask task{.time_step = time_step,
                          .tolerance = std::min(target_residual, deformation_.tolerance),
                          .softness = unreachable_ ? soft_springs : 0};
-  start_ = position, first_ = tension;
-  run_rounds(task, system, tension, position, report);
+  const auto run = [&](bool by_lines) {
+    const TensionProblem problem{system.inverse_mass, tension, position, from_, over_};
+    run_rounds(task, rounds_for(by_lines, system), problem, report);
+  };
+  first_.copy(tension);
+  run(few);
   if (!report.converged && !unreachable_) {
-    position = start_, tension = first_;
+    put_back(from_, position);
+    tension.copy(first_);
     restart_from_nearest(task, system, tension, position, report);
-    run_rounds(task, system, tension, position, report);
+    if (!grid_) find_over(tension, position, springs_.size());
+    run(false);
   }
   if (unreachable_) report.excess = excess(position);
   return report;

@@ -4,14 +4,15 @@
 // springs' directions at their two ends. Tensions are kept from step to step (warm start): a
 // step begins with the held tensions as forces, and only their changes are solved for.
 //
-//     std::vector<double> tension(solver.springs().size(), 0.0);
+//     SpringTensions tension(solver.springs().size()), held = tension;
 //     each step: solver.hold(tension, h, held);  add_force(held, position, force);  drift;
-//                tension = held;  solver.solve(system, h, tension, position);
+//                tension.copy(held);  solver.solve(system, h, tension, position);
 //
 // Each round is one sweep over the lines of springs, in which the tensions of a line are solved for together
 // (Thomas' algorithm), then a Newton step for all tensions by conjugate gradients with the lines as
 // preconditioner, projected to t >= 0. Where rounds do not converge, an interior point method provides a new
-// start.
+// start. Of a grid, few springs that are over their limit or have a tension are solved for spring by spring,
+// many of them with all springs of the grid side by side.
 #pragma once
 
 #include <limits>
@@ -49,8 +50,11 @@ class TensionSolver {
   /// Moves positions and changes tensions (N; in: held, out: solved) until excess and slack are within the
   /// tolerance, and further to the smaller `target_residual` if that takes few rounds. Particles move by
   /// internal forces only, which conserves the momentum of a free cloth.
-  TensionReport solve(const ClothSystem& system, double time_step, std::vector<double>& tension,
+  TensionReport solve(const ClothSystem& system, double time_step, SpringTensions& tension,
                       Vec3Field& position, double target_residual = std::numeric_limits<double>::infinity());
+
+  /// Of the particles that the last solve() moved, m: where they were before it.
+  const SparseField& moved_from() const { return from_; }
 
   double shortest() const { return shortest_; }  ///< m, rest length
 
@@ -58,21 +62,24 @@ class TensionSolver {
   double excess(const Vec3Field& position) const { return largest_excess(springs_, position); }
 
   /// force += J^T tension, N: each tension pulls its ends together.
-  void add_force(const std::vector<double>& tension, const Vec3Field& position, Vec3Field& force) const;
+  void add_force(const SpringTensions& tension, const Vec3Field& position, SparseField& force) const;
+  void add_force(const SpringTensions& tension, const Vec3Field& position, Vec3Field& force) const;
 
   /// `held` becomes the part of each tension that may act as a force over a step of h seconds: at most half
   /// of m (1 + rate) L/h^2, because a rotating spring would overshoot with more. Zero where the rate is
   /// unreachable.
-  void hold(const std::vector<double>& tension, double time_step, std::vector<double>& held) const;
+  void hold(const SpringTensions& tension, double time_step, SpringTensions& held) const;
 
   bool unreachable() const { return unreachable_; }
 
  private:
-  bool is_inactive(const std::vector<double>& tension, Vec3Field& position) const;
+  bool find_over(const SpringTensions& tension, Vec3Field& position, std::size_t most);
+  bool find_over_of_grid(const std::vector<double>& tension, Vec3Field& position, std::size_t most);
+  TensionRounds& rounds_for(bool few, const ClothSystem& system);
   void add_grid_force(const std::vector<double>& tension, const Vec3Field& position, Vec3Field& force) const;
-  void run_rounds(const TensionTask& task, const ClothSystem& system, std::vector<double>& tension,
-                  Vec3Field& position, TensionReport& report);
-  void restart_from_nearest(const TensionTask& task, const ClothSystem& system, std::vector<double>& tension,
+  void run_rounds(const TensionTask& task, TensionRounds& rounds, const TensionProblem& problem,
+                  TensionReport& report) const;
+  void restart_from_nearest(const TensionTask& task, const ClothSystem& system, SpringTensions& tension,
                             Vec3Field& position, TensionReport& report);
 
   Deformation deformation_;
@@ -80,10 +87,14 @@ class TensionSolver {
   std::vector<TensionSpring> springs_;
   std::vector<double> hold_;  ///< N s^2, of each spring: h^2 times the largest held tension
   std::optional<GridPlan> grid_;
-  std::unique_ptr<TensionRounds> rounds_;
-  std::optional<NearestShape> nearest_;  ///< made when it is first asked for
-  Vec3Field start_;                      ///< m, of the present solve
-  std::vector<double> first_;            ///< N, of the present solve
+  // Each is made when it is first asked for.
+  std::unique_ptr<TensionRounds> grid_rounds_, line_rounds_;
+  std::optional<NearestShape> nearest_;
+
+  // Of the present solve.
+  SparseField from_;                 ///< m
+  SpringTensions first_;             ///< N
+  std::vector<std::uint32_t> over_;  ///< springs over their limit, unless these are many of a grid
   double shortest_ = 0;
   bool unreachable_;
 };

@@ -32,8 +32,8 @@ struct Hung {
   double spacing() const { return 1.0 / (scene.cloth.columns - 1); }
 };
 
-std::vector<double> no_tension(const TensionSolver& solver) {
-  return std::vector<double>(solver.springs().size(), 0.0);
+SpringTensions no_tension(const TensionSolver& solver) {
+  return SpringTensions(solver.springs().size());
 }
 
 double length_of(const TensionSpring& spring, const Vec3Field& x) {
@@ -49,7 +49,7 @@ Vec3Field stretched(const ClothSystem& system, double strain, double noise, Rand
 }
 
 /// What a solution is, to the tolerance: the rate kept, tensions that pull, and none where there is slack.
-void expect_solution(const TensionSolver& solver, double tolerance, const std::vector<double>& tension,
+void expect_solution(const TensionSolver& solver, double tolerance, const SpringTensions& tension,
                      const Vec3Field& x) {
   for (std::size_t s = 0; s < solver.springs().size(); ++s) {
     const TensionSpring& spring = solver.springs()[s];
@@ -72,7 +72,7 @@ TEST(TensionSolver, KeepsTheRateOfRandomlyStretchedCloths) {
         if (side == 65 && noise > 0.05) continue;  // seconds
         Vec3Field x =
             stretched(cloth.system, random.uniform(0.5, 1.5) * rate, noise * cloth.spacing(), random);
-        std::vector<double> tension = no_tension(solver);
+        SpringTensions tension = no_tension(solver);
         const TensionReport report = solver.solve(cloth.system, step, tension, x);
         EXPECT_TRUE(report.converged) << side << " " << rate << " " << noise;
         EXPECT_LE(report.excess, cloth.deformation.tolerance);
@@ -88,7 +88,7 @@ TEST(TensionSolver, KeepsTheRateWhateverItBeginsWith) {
     const Hung cloth(17, 0.01);
     TensionSolver solver(cloth.deformation, cloth.system);
     Vec3Field x = stretched(cloth.system, 1, noise * cloth.spacing(), random);
-    std::vector<double> tension = no_tension(solver);
+    SpringTensions tension = no_tension(solver);
     const TensionReport report = solver.solve(cloth.system, step, tension, x);
     EXPECT_TRUE(report.converged) << noise;
     expect_solution(solver, cloth.deformation.tolerance, tension, x);
@@ -101,7 +101,7 @@ TEST(TensionSolver, LeavesPinsWhereTheyAre) {
   TensionSolver solver(cloth.deformation, cloth.system);
   const Vec3Field from = stretched(cloth.system, 0.05, 0.05 * cloth.spacing(), random);
   Vec3Field x = from;
-  std::vector<double> tension = no_tension(solver);
+  SpringTensions tension = no_tension(solver);
   ASSERT_TRUE(solver.solve(cloth.system, step, tension, x).converged);
   for (std::size_t i = 0; i < x.size(); ++i)
     if (cloth.system.pinned[i]) {
@@ -120,7 +120,7 @@ TEST(TensionSolver, KeepsTheMomentumOfAFreeCloth) {
     TensionSolver solver(cloth.deformation, cloth.system);
     const Vec3Field from = stretched(cloth.system, 0.05, noise * cloth.spacing(), random);
     Vec3Field x = from;
-    std::vector<double> tension = no_tension(solver);
+    SpringTensions tension = no_tension(solver);
     ASSERT_TRUE(solver.solve(cloth.system, step, tension, x).converged) << noise;
     Vec3 moved = Vec3::Zero(), turned = Vec3::Zero();
     double path = 0, area = 0;
@@ -143,7 +143,7 @@ TEST(TensionSolver, MovesByWhatItsTensionsPull) {
   // The motion is small against a cell, so that directions hardly change.
   const Vec3Field from = stretched(cloth.system, 0.101, 1e-4 * cloth.spacing(), random);
   Vec3Field x = from;
-  std::vector<double> tension = no_tension(solver);
+  SpringTensions tension = no_tension(solver);
   ASSERT_TRUE(solver.solve(cloth.system, step, tension, x).converged);
   Vec3Field pull(x.size());
   solver.add_force(tension, x, pull);
@@ -160,7 +160,7 @@ TEST(TensionSolver, FindsTheNearestShape) {
     TensionSolver solver(cloth.deformation, cloth.system);
     const Vec3Field from = stretched(cloth.system, 1.02 * rate, 0.02 * cloth.spacing(), random);
     Vec3Field x = from, nearest = from;
-    std::vector<double> tension = no_tension(solver);
+    SpringTensions tension = no_tension(solver);
     ASSERT_TRUE(solver.solve(cloth.system, step, tension, x).converged) << rate;
     ASSERT_TRUE(NearestShape(cloth.deformation, cloth.system).find(cloth.system, 1e-7, nearest).converged);
     EXPECT_LE(rms_distance(x, nearest), 0.05 * rms_distance(from, nearest)) << rate;
@@ -173,7 +173,7 @@ TEST(TensionSolver, FindsTheNearestShapeWhereRoundsDoNotEnd) {
   Random random;
   const Vec3Field from = stretched(cloth.system, 1, 2 * cloth.spacing(), random);
   Vec3Field x = from, nearest = from;
-  std::vector<double> tension = no_tension(solver);
+  SpringTensions tension = no_tension(solver);
   const TensionReport report = solver.solve(cloth.system, step, tension, x);
   ASSERT_TRUE(report.converged);
   ASSERT_GT(report.factorisations, 0);
@@ -181,11 +181,90 @@ TEST(TensionSolver, FindsTheNearestShapeWhereRoundsDoNotEnd) {
   EXPECT_LE(rms_distance(x, nearest), 1e-3 * rms_distance(from, nearest));
 }
 
+/// A cloth at rest of which a part around one particle is stretched.
+Vec3Field stretched_at(const ClothSystem& system, std::size_t middle, double radius, double strain,
+                       Random& random) {
+  Vec3Field x = system.start;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const Vec3 from = system.start[i] - system.start[middle];
+    if (from.norm() < radius && !system.pinned[i])
+      x.add(i, strain * from + random.vector(0.01 * strain * radius));
+  }
+  return x;
+}
+
+TEST(TensionSolver, SolvesForFewTautSpringsAndLeavesTheRestOfTheClothAsItIs) {
+  Random random;
+  for (const int side : {65, 129})
+    for (const double rate : {0.1, 0.01}) {
+      const Hung cloth(side, rate);
+      TensionSolver solver(cloth.deformation, cloth.system);
+      const auto middle = static_cast<std::size_t>(random.uniform(0.3, 0.7) * side * side);
+      const Vec3Field from = stretched_at(cloth.system, middle, 4 * cloth.spacing(), 1.1 * rate, random);
+      Vec3Field x = from, nearest = from;
+      SpringTensions tension = no_tension(solver);
+      const TensionReport report = solver.solve(cloth.system, step, tension, x);
+      ASSERT_TRUE(report.converged) << side << " " << rate;
+      ASSERT_GT(report.rounds, 0);
+      EXPECT_TRUE(tension.is_few() && tension.any());
+      EXPECT_NEAR(solver.excess(x), report.excess, 1e-12);
+      expect_solution(solver, cloth.deformation.tolerance, tension, x);
+      EXPECT_FALSE(solver.moved_from().is_everywhere());
+      EXPECT_LT(solver.moved_from().particles().size(), x.size() / 10);
+      for (std::size_t i = 0; i < x.size(); ++i)
+        ASSERT_EQ(solver.moved_from().has(i) ? solver.moved_from()[i] : x[i], from[i]) << i;
+      ASSERT_TRUE(NearestShape(cloth.deformation, cloth.system).find(cloth.system, 1e-7, nearest).converged);
+      EXPECT_LE(rms_distance(x, nearest), 0.05 * rms_distance(from, nearest)) << side << " " << rate;
+    }
+}
+
+TEST(TensionSolver, FindsSpringsThatBecomeTautWhileItSolves) {
+  // One spring is over its limit, all others of its row are just at theirs: shortening it stretches these.
+  const Hung cloth(65, 0.01, {});
+  TensionSolver solver(cloth.deformation, cloth.system);
+  Vec3Field x = cloth.system.start;
+  for (std::size_t i = 0; i < x.size(); ++i) x.x()[i] *= 1.01 - 1e-9;
+  const std::size_t row = 32 * 65;
+  for (std::size_t i = row + 32; i < row + 65; ++i) x.x()[i] += 0.02 * cloth.spacing();
+  SpringTensions tension = no_tension(solver);
+  const TensionReport report = solver.solve(cloth.system, step, tension, x);
+  ASSERT_TRUE(report.converged);
+  EXPECT_GT(tension.held().size(), 10u);
+  EXPECT_NEAR(solver.excess(x), report.excess, 1e-12);
+  expect_solution(solver, cloth.deformation.tolerance, tension, x);
+}
+
+TEST(TensionSolver, PullsByFewTensionsAsByAll) {
+  Random random;
+  const Hung cloth(33, 0.1);
+  const TensionSolver solver(cloth.deformation, cloth.system);
+  const Vec3Field x = stretched(cloth.system, 0.1, 0.5 * cloth.spacing(), random);
+  SpringTensions few = no_tension(solver);
+  for (int k = 0; k < 40; ++k)
+    few.write()[static_cast<std::size_t>(random.uniform(0, 1) * double(few.size() - 1))] = random.uniform(0, 2);
+  few.list_held();
+  ASSERT_TRUE(few.is_few());
+  std::vector<double> pulls = few.values();
+  for (double& t : pulls) t += 1e-300;
+  const SpringTensions many(pulls);
+  ASSERT_FALSE(many.is_few());
+  SparseField sparse, whole;
+  sparse.clear(x.size()), whole.clear(x.size());
+  solver.add_force(few, x, sparse);
+  solver.add_force(many, x, whole);
+  EXPECT_FALSE(sparse.is_everywhere());
+  EXPECT_TRUE(whole.is_everywhere());
+  EXPECT_LE(largest_distance(sparse.values(), whole.values()), 1e-14);
+  SpringTensions held = few, all = many;
+  solver.hold(few, 0.1, held), solver.hold(many, 0.1, all);
+  for (std::size_t s = 0; s < few.size(); ++s) ASSERT_NEAR(held[s], all[s], 1e-299) << s;
+}
+
 TEST(TensionSolver, HasNothingToDoWhereTheRateIsKept) {
   const Hung cloth(17, 0.01);
   TensionSolver solver(cloth.deformation, cloth.system);
   Vec3Field x = cloth.system.start;
-  std::vector<double> tension = no_tension(solver);
+  SpringTensions tension = no_tension(solver);
   const TensionReport report = solver.solve(cloth.system, step, tension, x);
   EXPECT_TRUE(report.converged);
   EXPECT_EQ(report.rounds, 0);
@@ -197,8 +276,9 @@ TEST(TensionSolver, LetsGoOfTensionsOfSlackSprings) {
   const Hung cloth(17, 0.01);
   TensionSolver solver(cloth.deformation, cloth.system);
   Vec3Field x = cloth.system.start;
-  std::vector<double> tension(solver.springs().size());
-  for (double& t : tension) t = random.uniform(0, 1e-3);
+  std::vector<double> pulls(solver.springs().size());
+  for (double& t : pulls) t = random.uniform(0, 1e-3);
+  SpringTensions tension(pulls);
   const TensionReport report = solver.solve(cloth.system, step, tension, x);
   EXPECT_TRUE(report.converged);
   expect_solution(solver, cloth.deformation.tolerance, tension, x);
@@ -207,9 +287,10 @@ TEST(TensionSolver, LetsGoOfTensionsOfSlackSprings) {
 TEST(TensionSolver, HoldsNoMoreThanASpringCanTurnBy) {
   const Hung cloth(5, 0.1);
   const TensionSolver solver(cloth.deformation, cloth.system);
-  std::vector<double> tension(solver.springs().size(), 1e9);
-  tension[3] = 1e-9;
-  std::vector<double> held;
+  std::vector<double> pulls(solver.springs().size(), 1e9);
+  pulls[3] = 1e-9;
+  const SpringTensions tension(pulls);
+  SpringTensions held = no_tension(solver);
   solver.hold(tension, step, held);
   EXPECT_EQ(held[3], 1e-9);
   const double mass = cloth.system.mass[12];
@@ -225,8 +306,9 @@ TEST(TensionSolver, PullsTheEndsOfASpringTogether) {
   const Hung cloth(3, 0.1);
   const TensionSolver solver(cloth.deformation, cloth.system);
   const std::size_t s = 4;
-  std::vector<double> tension = no_tension(solver);
-  tension[s] = 2;
+  SpringTensions tension = no_tension(solver);
+  tension.write()[s] = 2;
+  tension.list_held();
   Vec3Field force(cloth.system.start.size());
   solver.add_force(tension, cloth.system.start, force);
   const TensionSpring& spring = solver.springs()[s];
@@ -242,8 +324,9 @@ TEST(TensionSolver, PullsOnAGridAsOnAnySprings) {
   ClothSystem line = cloth.system;
   line.rows = 1, line.columns = cloth.system.size();  // no longer a grid
   const TensionSolver families(cloth.deformation, cloth.system), lines(cloth.deformation, line);
-  std::vector<double> tension = no_tension(families);
-  for (double& t : tension) t = std::max(0.0, random.uniform(-1, 1));
+  SpringTensions tension = no_tension(families);
+  for (double& t : tension.write()) t = std::max(0.0, random.uniform(-1, 1));
+  tension.list_held();
   const Vec3Field x = stretched(cloth.system, 0.1, 0.5 * cloth.spacing(), random);
   Vec3Field one(x.size()), two(x.size());
   families.add_force(tension, x, one);
@@ -257,7 +340,7 @@ TEST(TensionSolver, GivesTheSameBitsAgainWhateverItSolvedBefore) {
   TensionSolver solver(cloth.deformation, cloth.system);
   const Vec3Field from = stretched(cloth.system, 0.02, 0.05 * cloth.spacing(), random);
   Vec3Field x = from, y = from, between = stretched(cloth.system, 0.05, 0.1 * cloth.spacing(), random);
-  std::vector<double> tension = no_tension(solver), again = tension, other = tension;
+  SpringTensions tension = no_tension(solver), again = tension, other = tension;
   solver.solve(cloth.system, step, tension, x);
   solver.solve(cloth.system, step, other, between);
   solver.solve(cloth.system, step, again, y);
@@ -280,7 +363,7 @@ TEST(TensionSolver, GivesAGridTheSameAsAnySpringsWhetherFamiliesOrLinesAreSolved
       TensionSolver families(deformation, grid), lines(deformation, line);
       const Vec3Field from = stretched(grid, 0.0105, 1e-5, random);
       Vec3Field x = from, y = from;
-      std::vector<double> tension = no_tension(families), other = tension;
+      SpringTensions tension = no_tension(families), other = tension;
       const TensionReport one = families.solve(grid, step, tension, x);
       const TensionReport two = lines.solve(line, step, other, y);
       EXPECT_TRUE(one.converged && two.converged) << rows;
@@ -300,7 +383,7 @@ TEST(TensionSolver, KeepsTheRateOfMeshes) {
       const double cell = solver.springs()[0].rest_length;
       const Vec3Field from = stretched(system, random.uniform(0.5, 1.5) * rate, noise * cell, random);
       Vec3Field x = from;
-      std::vector<double> tension = no_tension(solver);
+      SpringTensions tension = no_tension(solver);
       const TensionReport report = solver.solve(system, step, tension, x);
       EXPECT_TRUE(report.converged) << rate << " " << noise;
       expect_solution(solver, deformation.tolerance, tension, x);
@@ -345,22 +428,23 @@ TEST(TensionSolver, CompromisesWhereThePinsMakeTheRateUnreachable) {
   Random random;
   Vec3Field x = stretched(cloth.system, 0.01, 0.01 * cloth.spacing(), random);
   x.add(16, Vec3(0.05, 0, 0));  // a pin
-  std::vector<double> tension = no_tension(solver);
+  SpringTensions tension = no_tension(solver);
   const Vec3Field from = x;
   const TensionReport report = solver.solve(cloth.system, step, tension, x);
   EXPECT_TRUE(report.converged);
   EXPECT_GT(report.excess, cloth.deformation.tolerance);
   EXPECT_LT(report.excess, solver.excess(from));
-  for (const double t : tension) EXPECT_GE(t, 0);
-  std::vector<double> held;
+  for (const double t : tension.values()) EXPECT_GE(t, 0);
+  SpringTensions held = no_tension(solver);
   solver.hold(tension, step, held);
-  for (const double t : held) EXPECT_EQ(t, 0);
+  EXPECT_FALSE(held.any());
+  for (const double t : held.values()) EXPECT_EQ(t, 0);
 }
 
 TEST(TensionSolver, SaysThatItHasNotConvergedWhereNothingCan) {
   Hung cloth(9, 0.01);
   TensionSolver solver(cloth.deformation, cloth.system);
-  std::vector<double> tension = no_tension(solver);
+  SpringTensions tension = no_tension(solver);
   Vec3Field x = cloth.system.start;
   x.add(8, Vec3(0.1, 0, 0));  // a pin out of reach
   const TensionReport out_of_reach = solver.solve(cloth.system, step, tension, x);

@@ -192,6 +192,24 @@ void particle_normals(int rows, int columns, const Vec3Field& position, Vec3Fiel
   particle_normals_of_rows(0, rows, rows, columns, position, normal);
 }
 
+Vec3 particle_normal(int rows, int columns, const Vec3Field& position, std::size_t particle) {
+  const int row = static_cast<int>(particle) / columns, column = static_cast<int>(particle) % columns;
+  Vec3 sum = Vec3::Zero();
+  for (const int r : {row - 1, row})
+    for (const int c : {column - 1, column}) {
+      if (r < 0 || r + 1 >= rows || c < 0 || c + 1 >= columns) continue;
+      const auto corner =
+          static_cast<std::size_t>(r) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(c);
+      const auto below = corner + static_cast<std::size_t>(columns);
+      const Vec3 a = position[corner], diagonal = position[below + 1] - a;
+      // The particle is b of the cell at its lower left and d of that at its upper right.
+      if (particle != corner + 1) sum += (position[below] - a).cross(diagonal);
+      if (particle != below) sum += diagonal.cross(position[corner + 1] - a);
+    }
+  const double length = sum.norm();
+  return length > 0 ? Vec3(sum / length) : Vec3(Vec3::Zero());
+}
+
 void particle_normal_changes(int rows, int columns, const Vec3Field& position, const Vec3Field& direction,
                              Vec3Field& change) {
   for_each_strip(rows, columns,

@@ -11,6 +11,8 @@ void particle_normals(int rows, int columns, const Vec3Field& position, Vec3Fiel
 /// The same of the particles in rows [begin, end) alone.
 void particle_normals_of_rows(int begin, int end, int rows, int columns, const Vec3Field& position,
                               Vec3Field& normal);
+/// That of one particle.
+Vec3 particle_normal(int rows, int columns, const Vec3Field& position, std::size_t particle);
 
 /// The directional derivative of the normals along `direction`; zero where there is no normal.
 void particle_normal_changes(int rows, int columns, const Vec3Field& position, const Vec3Field& direction,

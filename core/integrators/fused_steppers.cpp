@@ -1,6 +1,7 @@
 #include "integrators/fused_steppers.h"
 
 #include "forces/air.h"
+#include "forces/damping_at.h"
 
 namespace cloth {
 namespace {
@@ -71,7 +72,8 @@ IntegratorReport FusedSemiImplicitEuler::step(ForceModel& forces, const StepTime
   return report;
 }
 
-/// The forces are those at the velocity before the constraint's kick, which is therefore added after the pass.
+/// The forces are those at the velocity before the constraint's kick, which is therefore added after the
+/// pass.
 IntegratorReport FusedSemiImplicitEuler::held_step(ForceModel& forces, const StepTimes& times,
                                                    ClothState& state, Work& work) {
   before_ = state.velocity;
@@ -143,7 +145,8 @@ void FusedPredictedVerlet::begin_force(ForceModel& forces, double time, ClothSta
 
 IntegratorReport FusedPredictedVerlet::step(ForceModel& forces, const StepTimes& times, ClothState& state,
                                             Work& work) {
-  if (constraint_ && constraint_->holds()) return Verlet::step(forces, times, state, work);
+  const bool is_local = knows_damping_at(forces.system(), forces.swept());
+  if (!is_local && constraint_ && constraint_->holds()) return Verlet::step(forces, times, state, work);
   IntegratorReport report{.force_evaluations = 1};
   if (!holds_force_) {
     begin_force(forces, times.begin, state);
@@ -151,51 +154,65 @@ IntegratorReport FusedPredictedVerlet::step(ForceModel& forces, const StepTimes&
   }
   const double half = 0.5 * times.step;
   const SweepLoads loads = loads_at(forces, {&times.end, 1});
-  StepSums sums;
-  if (constraint_) {
-    constraint_->before_kick(half, times.step, state);
-    forces.sweep()->predicted_open(times.step, loads, force_, state);
-    constraint_->after_drift(half, state);
-    if (constraint_->opening_change()) {
-      work += half * power_;
-      if (forces.has_damping_loss()) {
-        work.damping_loss -= half * power_at_opening(forces, times, state);
-      }
-      report.force_evaluations += finish_predicted(forces, times, state, work) - 1;
-      return report;
-    }
-    sums = forces.sweep()->predicted_close(times.step, loads, force_, state);
-  } else {
-    sums = forces.sweep()->predicted(times.step, loads, force_, state);
-  }
+  if (constraint_) open_constrained(forces, times, loads, state);
+  const bool has_moved = constraint_ && constraint_->opening_change(), corrects = forces.has_damping_loss();
   work += half * power_;
+  if (has_moved && corrects) work.damping_loss -= half * power_at_opening(forces, times, state);
+  if (has_moved && !is_local) {
+    report.force_evaluations += finish_predicted(forces, times, state, work) - 1;
+    return report;
+  }
+  closing_correction_ = 0;
+  if (constraint_ && constraint_->closing_change() && corrects)
+    closing_correction_ = half * power_of_damping(forces.system(), forces.swept(), state.position,
+                                                  state.velocity, *constraint_->closing_change());
+  const StepSums sums = constraint_ ? forces.sweep()->predicted_close(times.step, loads, force_, state)
+                                    : forces.sweep()->predicted(times.step, loads, force_, state);
   power_ = power_of(forces, sums);
   work += half * power_;
+  work.damping_loss += closing_correction_;
   report.speed_squares = sums.after;
   holds_position_force_ = false, holds_force_ = true;
-  closing_correction_ = 0;
   return report;
 }
 
-/// The power of -D v for the constraint's change in the opening of the step, with the velocity that it had then instead of the one predicted for it:
-/// no pass keeps the damping apart from other forces, and in the ledger the difference is one of order 2.
-/// That state is found from the drifted one and what the constraint has changed of it, to rounding, so that
-/// steps in which the constraint moves nothing need not store it.
+/// Up to where the positions are known, with the predicted velocity. Only a step that begins with tensions,
+/// which nearly always moves particles, keeps its beginning.
+void FusedPredictedVerlet::open_constrained(ForceModel& forces, const StepTimes& times,
+                                            const SweepLoads& loads, ClothState& state) {
+  keeps_before_ = constraint_->holds();
+  if (keeps_before_) before_.position = state.position, before_.velocity = state.velocity;
+  constraint_->before_kick(0.5 * times.step, times.step, state);
+  forces.sweep()->predicted_open(times.step, loads, force_, state);
+  constraint_->after_drift(0.5 * times.step, state);
+}
+
+/// The power of -D v for the constraint's change in the opening of the step, with the velocity that the step
+/// began with instead of the one predicted for it: no pass keeps the damping apart from other forces, and in
+/// the ledger the difference is one of order 2.
 double FusedPredictedVerlet::power_at_opening(ForceModel& forces, const StepTimes& times,
                                               const ClothState& state) {
-  const double half = 0.5 * times.step;
+  const SparseField& change = *constraint_->opening_change();
+  if (!keeps_before_) find_before(forces, times.step, state);
+  if (knows_damping_at(forces.system(), forces.swept()))
+    return power_of_damping(forces.system(), forces.swept(), before_.position, before_.velocity, change);
+  if (opening_force_.size() != change.size()) opening_force_ = Vec3Field(change.size());
+  forces.update(before_.position, times.begin);
+  forces.force(before_.position, before_.velocity, opening_force_);
+  return power_of_damping(opening_force_, forces.position_force(), change);
+}
+
+/// The state at the beginning of the step, to rounding, from the drifted one and what the constraint has
+/// changed of it.
+void FusedPredictedVerlet::find_before(const ForceModel& forces, double step, const ClothState& state) {
   const SparseField& change = *constraint_->opening_change();
   before_.position = state.position, before_.velocity = state.velocity;
   add_scaled(-1, change, before_.velocity);
   if (const SparseField* closing = constraint_->closing_change()) add_scaled(-1, *closing, before_.velocity);
-  add_acceleration(forces.system(), -half, force_, before_.velocity);
-  add_scaled(-times.step, change, before_.position);
-  add_scaled(-times.step, before_.velocity, before_.position);
-  add_acceleration(forces.system(), -half, force_, before_.velocity);
-  if (opening_force_.size() != before_.position.size()) opening_force_ = Vec3Field(before_.position.size());
-  forces.update(before_.position, times.begin);
-  forces.force(before_.position, before_.velocity, opening_force_);
-  return power_of_damping(opening_force_, forces.position_force(), change);
+  add_acceleration(forces.system(), -0.5 * step, force_, before_.velocity);
+  add_scaled(-step, change, before_.position);
+  add_scaled(-step, before_.velocity, before_.position);
+  add_acceleration(forces.system(), -0.5 * step, force_, before_.velocity);
 }
 
 /// The next step begins with this evaluation.

@@ -99,7 +99,7 @@ class Verlet : public Integrator {
   void finish_corrected(ForceModel& forces, double half_step, ClothState& state);
 
   EndVelocity end_;
-  Vec3Field half_velocity_;    ///< m/s, of a step with corrected velocity
+  Vec3Field half_velocity_;  ///< m/s, of a step with corrected velocity
   VelocitySolver solver_;
 };
 

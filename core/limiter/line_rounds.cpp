@@ -31,7 +31,8 @@ PlacedSprings placed_springs(std::span<const TensionSpring> springs, const Cloth
     }
   const auto particles = static_cast<std::size_t>(system.size());
   placed.begin.assign(particles + 2, 0);
-  for (const TensionSpring& spring : springs) ++placed.begin[spring.first + 2], ++placed.begin[spring.second + 2];
+  for (const TensionSpring& spring : springs)
+    ++placed.begin[spring.first + 2], ++placed.begin[spring.second + 2];
   for (std::size_t i = 2; i < placed.begin.size(); ++i) placed.begin[i] += placed.begin[i - 1];
   placed.around.resize(2 * springs.size());
   for (std::size_t s = 0; s < springs.size(); ++s)
@@ -111,8 +112,10 @@ void LineRounds::begin(const TensionTask& task, const TensionProblem& problem) {
   position_ = &problem.position, from_ = &problem.from;
   const auto take = [this](std::size_t s) {
     const bool is_free = (*weight_)[springs_[s].first] + (*weight_)[springs_[s].second] > 0;
-    if (is_free) add_candidate(placed_.place[s]);
-    else (*tension_)[s] = 0;
+    if (is_free)
+      add_candidate(placed_.place[s]);
+    else
+      (*tension_)[s] = 0;
   };
   if (problem.tension.is_few())
     for (const std::uint32_t s : problem.tension.held()) take(s);
@@ -355,7 +358,8 @@ void LineRounds::take_step() {
     length = 1;
     for (std::size_t k = 0; k < active_.size(); ++k) {
       const Active& active = active_[k];
-      step_[k] = std::max(steepest_share * active.over / (square() * active.both), -(*tension_)[active.spring]);
+      step_[k] =
+          std::max(steepest_share * active.over / (square() * active.both), -(*tension_)[active.spring]);
     }
     pull(step_);
   }

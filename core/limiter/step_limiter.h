@@ -81,8 +81,8 @@ class StepLimiter : public DriftConstraint {
   // Of the present step.
   double time_step_ = 0;  ///< s, of the present drift
   bool drifts_with_end_velocity_ = false;
-  double closing_kick_ = 0;     ///< s
-  Vec3Field start_velocity_;    ///< m/s, before the first kick
+  double closing_kick_ = 0;       ///< s
+  Vec3Field start_velocity_;      ///< m/s, before the first kick
   SparseField drifted_;           ///< m, without tensions_: before limiting
   SparseField change_, closing_;  ///< m/s, by opening kick and limiting; by the closing kick
   bool opened_ = false, changed_ = false, closed_ = false;

@@ -40,7 +40,7 @@ struct TensionProblem {
   const std::vector<double>& inverse_mass;
   SpringTensions& tension;
   Vec3Field& position;
-  SparseField& from;                  ///< gets the first positions of particles that are moved
+  SparseField& from;                    ///< gets the first positions of particles that are moved
   std::span<const std::uint32_t> over;  ///< the springs over their limit, those between two pins aside
 };
 
@@ -77,8 +77,8 @@ class TensionRounds {
 
 /// For all springs of a grid: families of lines side by side. It does not ask for TensionProblem::over.
 std::unique_ptr<TensionRounds> make_grid_rounds(const GridPlan& plan);
-/// For any springs, and the only ones of a mesh: line by line, as long as springs that are over their limit or
-/// have a tension, and their neighbours, take. The two agree to the tolerance.
+/// For any springs, and the only ones of a mesh: line by line, as long as springs that are over their limit
+/// or have a tension, and their neighbours, take. The two agree to the tolerance.
 std::unique_ptr<TensionRounds> make_line_rounds(std::span<const TensionSpring> springs,
                                                 const ClothSystem& system);
 

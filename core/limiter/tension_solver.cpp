@@ -158,8 +158,7 @@ void TensionSolver::restart_from_nearest(const TensionTask& task, const ClothSys
     const TensionSpring& spring = springs_[s];
     if (system.pinned[spring.first] && system.pinned[spring.second]) continue;
     const double slack = spring.limit - (position[spring.second] - position[spring.first]).norm();
-    if (slack <= 0.5 * task.tolerance * spring.rest_length)
-      values[s] = unit * nearest_->multipliers()[found];
+    if (slack <= 0.5 * task.tolerance * spring.rest_length) values[s] = unit * nearest_->multipliers()[found];
     ++found;
   }
   tension.list_held();

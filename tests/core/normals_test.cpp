@@ -44,6 +44,9 @@ TEST(Normals, AreTheSumsOverTheTrianglesAtEveryParticle) {
     for (std::size_t i = 0; i < expected.size(); ++i) expected.set(i, expected[i].normalized());
     EXPECT_LE(largest_distance(normals_of(rows, columns, position), expected), 1e-14)
         << rows << " x " << columns;
+    for (std::size_t i = 0; i < expected.size(); ++i)
+      EXPECT_LE((particle_normal(rows, columns, position, i) - expected[i]).norm(), 1e-14)
+          << rows << " x " << columns << " " << i;
   }
 }
 

@@ -241,7 +241,8 @@ TEST(TensionSolver, PullsByFewTensionsAsByAll) {
   const Vec3Field x = stretched(cloth.system, 0.1, 0.5 * cloth.spacing(), random);
   SpringTensions few = no_tension(solver);
   for (int k = 0; k < 40; ++k)
-    few.write()[static_cast<std::size_t>(random.uniform(0, 1) * double(few.size() - 1))] = random.uniform(0, 2);
+    few.write()[static_cast<std::size_t>(random.uniform(0, 1) * double(few.size() - 1))] =
+        random.uniform(0, 2);
   few.list_held();
   ASSERT_TRUE(few.is_few());
   std::vector<double> pulls = few.values();

@@ -12,27 +12,36 @@
 namespace cloth {
 namespace {
 
+struct PlacedSpring {
+  std::uint32_t first, second;  ///< particles
+  std::uint32_t line, spring;   ///< the line it is in; its number among all springs
+  double rest_length, limit;    ///< m
+};
+
 /// Springs in the order of their lines. A place is an index into that order.
 struct PlacedSprings {
-  std::vector<std::uint32_t> spring, line;   ///< of each place
+  std::vector<PlacedSpring> at;
   std::vector<std::uint32_t> place;          ///< of each spring
   std::vector<std::uint32_t> around, begin;  ///< places of the springs at each particle, from begin on
 };
 
 PlacedSprings placed_springs(std::span<const TensionSpring> springs, const ClothSystem& system) {
   const SpringLines lines = spring_lines({springs.begin(), springs.end()}, system);
+  const auto small = [](std::size_t n) { return static_cast<std::uint32_t>(n); };
   PlacedSprings placed;
   placed.place.resize(springs.size());
+  placed.at.reserve(springs.size());
   for (std::size_t line = 0; line < lines.count(); ++line)
     for (std::size_t k = lines.begin[line]; k < lines.begin[line + 1]; ++k) {
-      placed.place[lines.springs[k]] = static_cast<std::uint32_t>(placed.spring.size());
-      placed.spring.push_back(static_cast<std::uint32_t>(lines.springs[k]));
-      placed.line.push_back(static_cast<std::uint32_t>(line));
+      const std::size_t s = lines.springs[k];
+      const TensionSpring& spring = springs[s];
+      placed.place[s] = small(placed.at.size());
+      placed.at.push_back({small(spring.first), small(spring.second), small(line), small(s),
+                           spring.rest_length, spring.limit});
     }
-  const auto particles = static_cast<std::size_t>(system.size());
-  placed.begin.assign(particles + 2, 0);
+  placed.begin.assign(static_cast<std::size_t>(system.size()) + 2, 0);
   for (const TensionSpring& spring : springs)
-    ++placed.begin[spring.first + 2], ++placed.begin[spring.second + 2];
+    for (const std::size_t end : {spring.first, spring.second}) ++placed.begin[end + 2];
   for (std::size_t i = 2; i < placed.begin.size(); ++i) placed.begin[i] += placed.begin[i - 1];
   placed.around.resize(2 * springs.size());
   for (std::size_t s = 0; s < springs.size(); ++s)
@@ -44,8 +53,7 @@ PlacedSprings placed_springs(std::span<const TensionSpring> springs, const Cloth
 class LineRounds : public TensionRounds {
  public:
   LineRounds(std::span<const TensionSpring> springs, const ClothSystem& system)
-      : springs_(springs),
-        placed_(placed_springs(springs, system)),
+      : placed_(placed_springs(springs, system)),
         is_candidate_(springs.size(), 0),
         is_moved_(static_cast<std::size_t>(system.size()), 0),
         node_(static_cast<std::size_t>(system.size())) {}
@@ -61,6 +69,7 @@ class LineRounds : public TensionRounds {
   struct Active {
     std::size_t spring, first, second;
     std::uint32_t place;
+    double rest_length;   ///< m
     double both;          ///< w_first + w_second
     Vec3 direction;       ///< a
     double over;          ///< C less what the softness allows
@@ -71,7 +80,7 @@ class LineRounds : public TensionRounds {
 
   void add_candidate(std::uint32_t place);
   void add_neighbours_of_moved();
-  bool is_over(std::size_t spring) const;
+  bool is_over(std::uint32_t place) const;
   bool make_active(std::uint32_t place, Active& active) const;
   void link(const Active& before, Active& active) const;
   void append_active(std::uint32_t place, std::vector<Active>& list) const;
@@ -84,7 +93,6 @@ class LineRounds : public TensionRounds {
   void take_step();
   double square() const { return task_.time_step * task_.time_step; }
 
-  std::span<const TensionSpring> springs_;
   PlacedSprings placed_;
 
   // Of the present solve.
@@ -111,8 +119,8 @@ void LineRounds::begin(const TensionTask& task, const TensionProblem& problem) {
   tensions_ = &problem.tension, tension_ = &problem.tension.write();
   position_ = &problem.position, from_ = &problem.from;
   const auto take = [this](std::size_t s) {
-    const bool is_free = (*weight_)[springs_[s].first] + (*weight_)[springs_[s].second] > 0;
-    if (is_free)
+    const PlacedSpring& spring = placed_.at[placed_.place[s]];
+    if ((*weight_)[spring.first] + (*weight_)[spring.second] > 0)
       add_candidate(placed_.place[s]);
     else
       (*tension_)[s] = 0;
@@ -120,7 +128,7 @@ void LineRounds::begin(const TensionTask& task, const TensionProblem& problem) {
   if (problem.tension.is_few())
     for (const std::uint32_t s : problem.tension.held()) take(s);
   else
-    for (std::size_t s = 0; s < springs_.size(); ++s)
+    for (std::size_t s = 0; s < tension_->size(); ++s)
       if ((*tension_)[s] > 0) take(s);
   for (const std::uint32_t s : problem.over) add_candidate(placed_.place[s]);
   std::sort(candidates_.begin(), candidates_.end());
@@ -130,7 +138,7 @@ void LineRounds::end() {
   for (const std::uint32_t i : moved_) is_moved_[i] = 0;
   for (std::uint32_t& place : candidates_) {
     is_candidate_[place] = 0;
-    place = placed_.spring[place];
+    place = placed_.at[place].spring;
   }
   moved_.clear();
   tensions_->list_held(candidates_);
@@ -143,8 +151,8 @@ void LineRounds::add_candidate(std::uint32_t place) {
   candidates_.push_back(place);
 }
 
-bool LineRounds::is_over(std::size_t s) const {
-  const TensionSpring& spring = springs_[s];
+bool LineRounds::is_over(std::uint32_t place) const {
+  const PlacedSpring& spring = placed_.at[place];
   const Vec3 d = (*position_)[spring.second] - (*position_)[spring.first];
   return d.squaredNorm() > spring.limit * spring.limit;
 }
@@ -155,7 +163,7 @@ void LineRounds::add_neighbours_of_moved() {
     is_moved_[i] = 0;
     for (std::uint32_t k = placed_.begin[i]; k < placed_.begin[i + 1]; ++k) {
       const std::uint32_t place = placed_.around[k];
-      if (!is_candidate_[place] && is_over(placed_.spring[place])) add_candidate(place);
+      if (!is_candidate_[place] && is_over(place)) add_candidate(place);
     }
   }
   moved_.clear();
@@ -166,17 +174,16 @@ void LineRounds::add_neighbours_of_moved() {
 
 /// False where the spring is not active.
 bool LineRounds::make_active(std::uint32_t place, Active& active) const {
-  const std::size_t s = placed_.spring[place];
-  const TensionSpring& spring = springs_[s];
+  const PlacedSpring& spring = placed_.at[place];
   const std::size_t i = spring.first, j = spring.second;
   const double both = (*weight_)[i] + (*weight_)[j];
   if (!(both > 0)) return false;
   const Vec3 d = (*position_)[j] - (*position_)[i];
-  const double length = d.norm(), tension = (*tension_)[s];
+  const double length = d.norm(), tension = (*tension_)[spring.spring];
   const double over = length - spring.limit - square() * task_.softness * both * tension;
   if (!(over > 0) && !(tension > 0)) return false;
-  active.spring = s, active.first = spring.first, active.second = spring.second;
-  active.place = place;
+  active.spring = spring.spring, active.first = spring.first, active.second = spring.second;
+  active.place = place, active.rest_length = spring.rest_length;
   active.both = both, active.over = over;
   active.direction = length > 0 ? Vec3(d / length) : Vec3(Vec3::Zero());
   return true;
@@ -194,7 +201,7 @@ void LineRounds::link(const Active& before, Active& active) const {
 void LineRounds::append_active(std::uint32_t place, std::vector<Active>& list) const {
   Active active{};
   if (!make_active(place, active)) return;
-  if (!list.empty() && list.back().place + 1 == place && placed_.line[place] == placed_.line[place - 1])
+  if (!list.empty() && list.back().place + 1 == place && placed_.at[place].line == placed_.at[place - 1].line)
     link(list.back(), active);
   list.push_back(active);
 }
@@ -211,7 +218,7 @@ TensionResidual LineRounds::evaluate() {
   std::erase_if(candidates_, [this](std::uint32_t place) { return !is_candidate_[place]; });
   TensionResidual found;
   for (const Active& active : active_) {
-    const double relative = active.over / springs_[active.spring].rest_length;
+    const double relative = active.over / active.rest_length;
     found.excess = std::max(found.excess, relative);
     if ((*tension_)[active.spring] > 0) found.slack = std::max(found.slack, -relative);
   }
@@ -228,7 +235,7 @@ void LineRounds::move(std::size_t i, const Vec3& shift) {
 }
 
 void LineRounds::sweep_lines(bool backwards) {
-  const auto line = [this](std::size_t k) { return placed_.line[candidates_[k]]; };
+  const auto line = [this](std::size_t k) { return placed_.at[candidates_[k]].line; };
   const std::size_t count = candidates_.size();
   if (backwards)
     for (std::size_t end = count, begin; end > 0; end = begin) {
@@ -309,13 +316,13 @@ int LineRounds::conjugate_gradients() {
     active.pivot = 1 / (active.both * (1 + ridge) - before * active.link);
   }
   const double per_square = 1 / square();
-  double largest = 0, shortest = springs_[0].rest_length;
+  double largest = 0, shortest = active_[0].rest_length;
   residual_.resize(count), solved_.resize(count), direction_.resize(count), product_.resize(count);
   step_.assign(count, 0.0);
   for (std::size_t k = 0; k < count; ++k) {
     residual_[k] = active_[k].over * per_square;
     largest = std::max(largest, std::abs(residual_[k]));
-    shortest = std::min(shortest, springs_[active_[k].spring].rest_length);
+    shortest = std::min(shortest, active_[k].rest_length);
   }
   const double enough =
       std::max(enough_of_residual * largest, enough_of_tolerance * task_.tolerance * shortest * per_square);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <random>
 
+#include "cloth/grid.h"
 #include "forces/damping_at.h"
 #include "integrators/fused_steppers.h"
 #include "integrators/registry.h"

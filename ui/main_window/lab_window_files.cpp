@@ -62,7 +62,7 @@ bool LabWindow::openComparison(const QString& name) {
 
 /// For work beside the window, which its message says and offers to stop.
 bool LabWindow::isWaiting() const {
-  return findChild<QDialog*>("beside");
+  return findChild<QDialog*>("beside", Qt::FindDirectChildrenOnly);
 }
 
 /// As cloth::load_meshes() does, beside the window.

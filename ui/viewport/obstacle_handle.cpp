@@ -56,6 +56,9 @@ double distance_to_obstacle(const cloth::Obstacle& o, const cloth::Pose& pose, c
     case cloth::BodyKind::surface: {
       const cloth::PlacedSurface surface = shape_of(o).surface(o);
       if (!surface.mesh || !(surface.scale.minCoeff() > 0)) return infinity;
+      const Eigen::AlignedBox3d box = shape_of(o).bounds(o);
+      if (distance_to_box({local.origin - box.center(), local.direction}, 0.5 * box.sizes()) == infinity)
+        return infinity;
       const cloth::Pose put{surface.rotation, surface.place, surface.scale};
       // Along the unscaled way, so that it is a length in the world whatever the scale of each axis.
       const Eigen::Vector3d along =

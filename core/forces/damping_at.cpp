@@ -1,56 +1,74 @@
 #include "forces/damping_at.h"
 
+#include <algorithm>
+
 #include "cloth/normals.h"
 
 namespace cloth {
+
 namespace {
 
-/// Calls visit(particle) for the other end of every spring of `block` that ends at particle i.
-template <class Visit>
-void for_each_neighbour(const SpringBlock& block, int i, const Visit& visit) {
-  const auto has = [&](int first_end) {
-    const int k = first_end - block.run.first;
-    if (k < 0) return false;
-    const int row = block.stride > 0 ? k / block.stride : 0;
-    return row < block.rows && k - row * block.stride < block.run.count;
-  };
-  if (has(i)) visit(static_cast<std::size_t>(i + block.run.offset));
-  if (has(i - block.run.offset)) visit(static_cast<std::size_t>(i - block.run.offset));
+/// Whole rows in one run, or a part of each row in a run of its own.
+bool fills_rows(const SpringBlock& block, int columns) {
+  const int column = block.run.first % columns;
+  if (block.rows == 1 && column == 0 && block.run.count % columns == 0) return true;
+  return column + block.run.count <= columns && (block.rows == 1 || block.stride == columns);
 }
 
 }  // namespace
 
-bool knows_damping_at(const ClothSystem& system, const SweepTerms& terms) {
-  constexpr std::size_t directions = 6;  // of a grid's springs; each particle's are looked for in all blocks
+bool DampingAt::suits(const ClothSystem& system, const SweepTerms& terms) {
   return !system.is_mesh() && system.springs.blocks().size() <= directions && terms.uniform_mass &&
+         std::all_of(system.springs.blocks().begin(), system.springs.blocks().end(),
+                     [&](const SpringBlock& block) { return fills_rows(block, system.columns); }) &&
          !terms.has_shares && !(terms.stretch_time > 0) && !(terms.bending_time > 0) && !terms.sliders;
 }
 
-Vec3 damping_at(const ClothSystem& system, const SweepTerms& terms, const Vec3Field& position,
-                const Vec3Field& velocity, std::size_t particle) {
+bool DampingAt::is_worthwhile(const SparseField& change) {
+  return !change.is_everywhere() && change.particles().size() <= change.size() / 16;
+}
+
+DampingAt::DampingAt(const ClothSystem& system, const SweepTerms& terms) : system_(&system), terms_(&terms) {
+  if (!(terms.spring_damping > 0)) return;
+  for (const SpringBlock& block : system.springs.blocks())
+    directions_[count_++] = direction_of(block, system.columns);
+}
+
+/// Down the columns all rows are one run.
+DampingAt::Direction DampingAt::direction_of(const SpringBlock& block, int columns) {
+  const SpringRun& run = block.run;
+  const int row = run.first / columns, column = run.first % columns, end = run.first + run.offset;
+  const int rows = std::max(block.rows, run.count / columns), width = std::min(run.count, columns);
+  return {row, row + rows, column, column + width, end / columns - row, end % columns - column, run.offset};
+}
+
+Vec3 DampingAt::product(std::size_t particle, const Vec3Field& position, const Vec3Field& velocity) const {
+  const int i = static_cast<int>(particle), row = i / system_->columns, column = i % system_->columns;
   const Vec3 x = position[particle], v = velocity[particle];
-  Vec3 product = terms.damping * v;
-  if (terms.spring_damping > 0)
-    for (const SpringBlock& block : system.springs.blocks())
-      for_each_neighbour(block, static_cast<int>(particle), [&](std::size_t other) {
-        const Vec3 d = position[other] - x;
-        const double square = d.squaredNorm();
-        if (square > 0) product += (terms.spring_damping * (v - velocity[other]).dot(d) / square) * d;
-      });
-  if (terms.air) {
-    const Vec3 n = particle_normal(system.rows, system.columns, position, particle);
+  Vec3 product = terms_->damping * v;
+  const auto add = [&](int other) {
+    const auto j = static_cast<std::size_t>(other);
+    const Vec3 d = position[j] - x;
+    const double square = d.squaredNorm();
+    if (square > 0) product += (terms_->spring_damping * (v - velocity[j]).dot(d) / square) * d;
+  };
+  for (std::size_t k = 0; k < count_; ++k) {
+    const Direction& way = directions_[k];
+    if (way.begins_at(row, column)) add(i + way.offset);
+    if (way.begins_at(row - way.down, column - way.across)) add(i - way.offset);
+  }
+  if (terms_->air) {
+    const Vec3 n = particle_normal(system_->rows, system_->columns, position, particle);
     const double along = n.dot(v);
-    product += terms.air_drag * along * n + terms.air_friction * (v - along * n);
+    product += terms_->air_drag * along * n + terms_->air_friction * (v - along * n);
   }
   return product;
 }
 
-double power_of_damping(const ClothSystem& system, const SweepTerms& terms, const Vec3Field& position,
-                        const Vec3Field& velocity, const SparseField& change) {
+double DampingAt::power(const Vec3Field& position, const Vec3Field& velocity,
+                        const SparseField& change) const {
   double power = 0;
-  const auto add = [&](std::size_t i) {
-    power -= damping_at(system, terms, position, velocity, i).dot(change[i]);
-  };
+  const auto add = [&](std::size_t i) { power -= product(i, position, velocity).dot(change[i]); };
   if (change.is_everywhere())
     for (std::size_t i = 0; i < change.size(); ++i) add(i);
   else

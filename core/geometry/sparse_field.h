@@ -15,13 +15,13 @@ class SparseField {
  public:
   /// Zero at all of `size` particles.
   void clear(std::size_t size) {
-    if (everywhere_ || size != values_.size()) {
-      values_ = Vec3Field(size);
-      listed_.assign(size, 0);
-    } else {
-      for (const std::uint32_t i : particles_) values_.set(i, Vec3::Zero()), listed_[i] = 0;
-    }
-    particles_.clear();
+    if (size != values_.size())
+      values_ = Vec3Field(size), listed_.assign(size, 0), particles_.clear();
+    else if (everywhere_)
+      values_.fill(0);
+    else
+      for (const std::uint32_t i : particles_) values_.set(i, Vec3::Zero());
+    clear_list();
     everywhere_ = false;
   }
 
@@ -38,6 +38,7 @@ class SparseField {
 
   /// All values to write, after which every particle counts and particles() is empty.
   Vec3Field& everywhere() {
+    clear_list();
     everywhere_ = true;
     return values_;
   }
@@ -48,6 +49,10 @@ class SparseField {
   Vec3 operator[](std::size_t particle) const { return values_[particle]; }
 
  private:
+  void clear_list() {
+    for (const std::uint32_t i : particles_) listed_[i] = 0;
+    particles_.clear();
+  }
   void list(std::size_t particle) {
     listed_[particle] = 1;
     particles_.push_back(static_cast<std::uint32_t>(particle));

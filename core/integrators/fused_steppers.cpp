@@ -145,8 +145,9 @@ void FusedPredictedVerlet::begin_force(ForceModel& forces, double time, ClothSta
 
 IntegratorReport FusedPredictedVerlet::step(ForceModel& forces, const StepTimes& times, ClothState& state,
                                             Work& work) {
-  const bool is_local = knows_damping_at(forces.system(), forces.swept());
-  if (!is_local && constraint_ && constraint_->holds()) return Verlet::step(forces, times, state, work);
+  const bool knows_damping = DampingAt::suits(forces.system(), forces.swept());
+  if (constraint_ && constraint_->holds() && !(knows_damping && constraint_->holds_few()))
+    return Verlet::step(forces, times, state, work);
   IntegratorReport report{.force_evaluations = 1};
   if (!holds_force_) {
     begin_force(forces, times.begin, state);
@@ -155,17 +156,16 @@ IntegratorReport FusedPredictedVerlet::step(ForceModel& forces, const StepTimes&
   const double half = 0.5 * times.step;
   const SweepLoads loads = loads_at(forces, {&times.end, 1});
   if (constraint_) open_constrained(forces, times, loads, state);
-  const bool has_moved = constraint_ && constraint_->opening_change(), corrects = forces.has_damping_loss();
   work += half * power_;
-  if (has_moved && corrects) work.damping_loss -= half * power_at_opening(forces, times, state);
-  if (has_moved && !is_local) {
-    report.force_evaluations += finish_predicted(forces, times, state, work) - 1;
-    return report;
-  }
   closing_correction_ = 0;
-  if (constraint_ && constraint_->closing_change() && corrects)
-    closing_correction_ = half * power_of_damping(forces.system(), forces.swept(), state.position,
-                                                  state.velocity, *constraint_->closing_change());
+  if (constraint_ && constraint_->opening_change()) {
+    if (!knows_damping || !DampingAt::is_worthwhile(*constraint_->opening_change())) {
+      if (forces.has_damping_loss()) work.damping_loss -= half * power_at_opening(forces, times, state);
+      report.force_evaluations += finish_predicted(forces, times, state, work) - 1;
+      return report;
+    }
+    if (forces.has_damping_loss()) work.damping_loss -= half * correct_few(forces, times.step, state);
+  }
   const StepSums sums = constraint_ ? forces.sweep()->predicted_close(times.step, loads, force_, state)
                                     : forces.sweep()->predicted(times.step, loads, force_, state);
   power_ = power_of(forces, sums);
@@ -187,19 +187,26 @@ void FusedPredictedVerlet::open_constrained(ForceModel& forces, const StepTimes&
   constraint_->after_drift(0.5 * times.step, state);
 }
 
+/// Where the constraint changes few particles: returns power_at_opening(), and finds the correction of the
+/// closing, at the predicted velocity.
+double FusedPredictedVerlet::correct_few(ForceModel& forces, double step, const ClothState& state) {
+  const DampingAt damping(forces.system(), forces.swept());
+  if (const SparseField* closing = constraint_->closing_change())
+    closing_correction_ = 0.5 * step * damping.power(state.position, state.velocity, *closing);
+  if (!keeps_before_) find_before(forces, step, state);
+  return damping.power(before_.position, before_.velocity, *constraint_->opening_change());
+}
+
 /// The power of -D v for the constraint's change in the opening of the step, with the velocity that the step
 /// began with instead of the one predicted for it: no pass keeps the damping apart from other forces, and in
 /// the ledger the difference is one of order 2.
 double FusedPredictedVerlet::power_at_opening(ForceModel& forces, const StepTimes& times,
                                               const ClothState& state) {
-  const SparseField& change = *constraint_->opening_change();
   if (!keeps_before_) find_before(forces, times.step, state);
-  if (knows_damping_at(forces.system(), forces.swept()))
-    return power_of_damping(forces.system(), forces.swept(), before_.position, before_.velocity, change);
-  if (opening_force_.size() != change.size()) opening_force_ = Vec3Field(change.size());
+  if (opening_force_.size() != state.position.size()) opening_force_ = Vec3Field(state.position.size());
   forces.update(before_.position, times.begin);
   forces.force(before_.position, before_.velocity, opening_force_);
-  return power_of_damping(opening_force_, forces.position_force(), change);
+  return power_beside(forces.position_force(), opening_force_, *constraint_->opening_change());
 }
 
 /// The state at the beginning of the step, to rounding, from the drifted one and what the constraint has

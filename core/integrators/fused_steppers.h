@@ -88,7 +88,7 @@ class FusedVerlet : public Verlet {
 
 /// Verlet with every force at the predicted velocity (EndVelocity::predicted), dampers along springs and air
 /// in the pass. With a constraint the pass is divided where that acts; a step in which it moves particles is
-/// one of the general method where damping_at() does not know the damping.
+/// one of the general method where these are many or DampingAt does not know the damping.
 class FusedPredictedVerlet : public Verlet {
  public:
   FusedPredictedVerlet() : Verlet(EndVelocity::predicted) {}
@@ -104,6 +104,7 @@ class FusedPredictedVerlet : public Verlet {
   Work power_of(const ForceModel& forces, const StepSums& sums) const;
   void open_constrained(ForceModel& forces, const StepTimes& times, const SweepLoads& loads,
                         ClothState& state);
+  double correct_few(ForceModel& forces, double step, const ClothState& state);
   double power_at_opening(ForceModel& forces, const StepTimes& times, const ClothState& state);
   void find_before(const ForceModel& forces, double step, const ClothState& state);
 

@@ -60,6 +60,8 @@ class DriftConstraint {
   virtual ~DriftConstraint() = default;
   /// Whether before_kick() would change the velocity.
   virtual bool holds() const = 0;
+  /// Whether it would do so for few of the particles.
+  virtual bool holds_few() const = 0;
   /// Called once the forces are known, before they act on the velocity for `kick` seconds and the position
   /// moves for `drift` seconds. Adds the constraint's own change of velocity. A step may have several such
   /// pairs.

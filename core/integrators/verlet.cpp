@@ -11,7 +11,7 @@ constexpr double tolerance_before_contact = 1e-5;
 
 }  // namespace
 
-double power_of_damping(const Vec3Field& force, const Vec3Field& position_force, const SparseField& change) {
+double power_beside(const Vec3Field& position_force, const Vec3Field& force, const SparseField& change) {
   if (!change.is_everywhere()) {
     double power = 0;
     for (const std::uint32_t i : change.particles()) power += (force[i] - position_force[i]).dot(change[i]);
@@ -111,7 +111,7 @@ int Verlet::finish_predicted(ForceModel& forces, const StepTimes& times, ClothSt
 /// The damping is still that of the opening kick.
 void Verlet::correct_opening(const ForceModel& forces, double half_step, Work& work) const {
   if (const SparseField* change = constraint_->opening_change())
-    work.damping_loss -= half_step * power_of_damping(force_, forces.position_force(), *change);
+    work.damping_loss -= half_step * power_beside(forces.position_force(), force_, *change);
 }
 
 /// Damping works with the velocity at the ends of a step, but without what a constraint's kicks, counted
@@ -119,7 +119,7 @@ void Verlet::correct_opening(const ForceModel& forces, double half_step, Work& w
 /// next kick, and nothing has gone so fast.
 double Verlet::closing_correction(const ForceModel& forces, double step) {
   if (!constraint_ || !forces.has_damping_loss() || !constraint_->closing_change()) return 0;
-  return 0.5 * step * power_of_damping(force_, forces.position_force(), *constraint_->closing_change());
+  return 0.5 * step * power_beside(forces.position_force(), force_, *constraint_->closing_change());
 }
 
 void Verlet::evaluate(ForceModel& forces, const ClothState& state) {

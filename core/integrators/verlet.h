@@ -103,8 +103,7 @@ class Verlet : public Integrator {
   VelocitySolver solver_;
 };
 
-/// W, of the damping - D v as far as particles move by `change` (m/s): `force` is that of positions and
-/// damping, `position_force` that of positions alone.
-double power_of_damping(const Vec3Field& force, const Vec3Field& position_force, const SparseField& change);
+/// The power in W of what `force` has beside `position_force`, - D v, where particles move by `change` (m/s).
+double power_beside(const Vec3Field& position_force, const Vec3Field& force, const SparseField& change);
 
 }  // namespace cloth

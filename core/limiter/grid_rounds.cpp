@@ -102,7 +102,8 @@ void GridRounds::begin(const TensionTask& task, const TensionProblem& problem) {
   moved_ = {0, plan_.rows};
 }
 
-void GridRounds::end() {
+void GridRounds::end(bool changed) {
+  if (!changed) return;
   std::vector<double>& tension = tension_->write();
   Vec3Field& position = *position_;
   const AlignedDoubles* from[] = {&x_, &y_, &z_};

@@ -18,7 +18,7 @@ class GridRounds : public TensionRounds {
   TensionResidual evaluate() override;
   void sweep_lines(bool backwards) override;
   int solve_together() override;
-  void end() override;
+  void end(bool changed) override;
 
  private:
   using Values = AlignedFloats FamilyEquations::*;

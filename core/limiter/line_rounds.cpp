@@ -1,9 +1,10 @@
-// TensionRounds for any springs: lines one after the other, and only what is near springs that are over their
-// limit or have a tension. Where nothing has moved, nothing is looked at again.
+// TensionRounds for any springs: lines one after the other. While few springs are over their limit or have a
+// tension, the others are looked at only where one of their ends has moved.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <numeric>
 #include <utility>
 
 #include "cloth/sums.h"
@@ -26,7 +27,7 @@ struct PlacedSprings {
 };
 
 PlacedSprings placed_springs(std::span<const TensionSpring> springs, const ClothSystem& system) {
-  const SpringLines lines = spring_lines({springs.begin(), springs.end()}, system);
+  const SpringLines lines = spring_lines(springs, system);
   const auto small = [](std::size_t n) { return static_cast<std::uint32_t>(n); };
   PlacedSprings placed;
   placed.place.resize(springs.size());
@@ -62,7 +63,8 @@ class LineRounds : public TensionRounds {
   TensionResidual evaluate() override;
   void sweep_lines(bool backwards) override;
   int solve_together() override;
-  void end() override;
+  bool have_outgrown() const override { return takes_all_; }
+  void end(bool changed) override;
 
  private:
   /// A spring that is over its limit or has a tension, and its equation.
@@ -79,6 +81,7 @@ class LineRounds : public TensionRounds {
   };
 
   void add_candidate(std::uint32_t place);
+  void take_all_if_many();
   void add_neighbours_of_moved();
   bool is_over(std::uint32_t place) const;
   bool make_active(std::uint32_t place, Active& active) const;
@@ -104,6 +107,7 @@ class LineRounds : public TensionRounds {
   SparseField* from_ = nullptr;
 
   std::vector<std::uint32_t> candidates_;  ///< places that may be active; ascending after evaluate()
+  bool takes_all_ = false;                 ///< candidates_ are all places
   std::vector<std::uint8_t> is_candidate_;
   std::vector<std::uint32_t> moved_;  ///< particles, since the last evaluation
   std::vector<std::uint8_t> is_moved_;
@@ -132,9 +136,11 @@ void LineRounds::begin(const TensionTask& task, const TensionProblem& problem) {
       if ((*tension_)[s] > 0) take(s);
   for (const std::uint32_t s : problem.over) add_candidate(placed_.place[s]);
   std::sort(candidates_.begin(), candidates_.end());
+  takes_all_ = false;
+  take_all_if_many();
 }
 
-void LineRounds::end() {
+void LineRounds::end(bool) {
   for (const std::uint32_t i : moved_) is_moved_[i] = 0;
   for (std::uint32_t& place : candidates_) {
     is_candidate_[place] = 0;
@@ -149,6 +155,16 @@ void LineRounds::add_candidate(std::uint32_t place) {
   if (is_candidate_[place]) return;
   is_candidate_[place] = 1;
   candidates_.push_back(place);
+}
+
+/// A front of taut springs would advance by one spring in each evaluation; a sweep over all lines carries it
+/// across the cloth.
+void LineRounds::take_all_if_many() {
+  if (takes_all_ || candidates_.size() <= SpringTensions::most(placed_.at.size())) return;
+  takes_all_ = true;
+  candidates_.resize(placed_.at.size());
+  std::iota(candidates_.begin(), candidates_.end(), 0U);
+  std::fill(is_candidate_.begin(), is_candidate_.end(), std::uint8_t{1});
 }
 
 bool LineRounds::is_over(std::uint32_t place) const {
@@ -210,12 +226,17 @@ void LineRounds::append_active(std::uint32_t place, std::vector<Active>& list) c
 TensionResidual LineRounds::evaluate() {
   add_neighbours_of_moved();
   active_.clear();
-  for (const std::uint32_t place : candidates_) {
-    const std::size_t count = active_.size();
-    append_active(place, active_);
-    is_candidate_[place] = active_.size() > count;
+  if (takes_all_) {
+    for (const std::uint32_t place : candidates_) append_active(place, active_);
+  } else {
+    for (const std::uint32_t place : candidates_) {
+      const std::size_t count = active_.size();
+      append_active(place, active_);
+      is_candidate_[place] = active_.size() > count;
+    }
+    std::erase_if(candidates_, [this](std::uint32_t place) { return !is_candidate_[place]; });
+    take_all_if_many();
   }
-  std::erase_if(candidates_, [this](std::uint32_t place) { return !is_candidate_[place]; });
   TensionResidual found;
   for (const Active& active : active_) {
     const double relative = active.over / active.rest_length;

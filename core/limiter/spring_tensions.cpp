@@ -34,7 +34,11 @@ void SpringTensions::list_held() {
 }
 
 void SpringTensions::list_held(std::vector<std::uint32_t>& springs) {
-  std::erase_if(springs, [this](std::uint32_t s) { return !(values_[s] > 0); });
+  std::erase_if(springs, [this](std::uint32_t s) {
+    if (values_[s] > 0) return false;
+    values_[s] = 0;  // whatever it was
+    return true;
+  });
   few_ = springs.size() <= most(size());
   held_.clear();
   if (!few_) return;

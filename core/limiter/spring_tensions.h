@@ -1,9 +1,11 @@
 // Tensions of springs in N, none negative, with a list of those above 0 as long as these are few.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace cloth {
@@ -33,6 +35,16 @@ class SpringTensions {
   void list_held();
   /// `springs`: in any order, those that may have a tension; all others have none.
   void list_held(std::vector<std::uint32_t>& springs);
+  /// Lowers each tension to at most limit(spring).
+  template <class Limit>
+  void lower(const Limit& limit) {
+    if (!few_) {
+      for (std::size_t s = 0; s < values_.size(); ++s) values_[s] = std::min(values_[s], limit(s));
+      return list_held();
+    }
+    for (const std::uint32_t s : held_) values_[s] = std::min(values_[s], limit(s));
+    std::erase_if(held_, [this](std::uint32_t s) { return !(values_[s] > 0); });
+  }
 
   bool operator==(const SpringTensions& other) const { return values_ == other.values_; }
 

@@ -83,6 +83,11 @@ bool StepLimiter::holds() const {
   return tension_.any() && !tensions_->unreachable();
 }
 
+/// Springs that are held lie side by side, so that they have some half as many ends.
+bool StepLimiter::holds_few() const {
+  return tension_.is_few() && tension_.held().size() <= static_cast<std::size_t>(system_->size()) / 12;
+}
+
 /// velocity and change += duration W J^T tension
 void StepLimiter::pull(double duration, const SpringTensions& tension, SparseField& change,
                        ClothState& state) {

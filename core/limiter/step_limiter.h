@@ -26,6 +26,7 @@ class StepLimiter : public DriftConstraint {
   void begin_step(double time_step, const ClothState& state, bool drifts_with_end_velocity);
 
   bool holds() const override;
+  bool holds_few() const override;
   void before_kick(double kick, double drift, ClothState& state) override;
   void after_drift(double closing_kick, ClothState& state) override;
   void forget_tensions() override;

@@ -72,7 +72,10 @@ class TensionRounds {
   /// One Newton step for all tensions at the last evaluated positions, by conjugate gradients with the lines
   /// as preconditioner. Returns the iterations.
   virtual int solve_together() = 0;
-  virtual void end() = 0;
+  /// Whether more springs have come to be looked at than such rounds are for.
+  virtual bool have_outgrown() const { return false; }
+  /// `changed`: anything was swept or solved.
+  virtual void end(bool changed) = 0;
 };
 
 /// For all springs of a grid: families of lines side by side. It does not ask for TensionProblem::over.

@@ -12,6 +12,8 @@ namespace {
 
 constexpr int max_tension_rounds = 100;
 constexpr int max_rounds_to_aim = 10;  ///< within the tolerance already
+/// Of springs one by one on a grid: nearly always some two, up to ten.
+constexpr int most_rounds_of_few = 20;
 
 /// Share of m l/h^2, the tension that rotates its spring by 1 rad within a step.
 constexpr double held_share = 0.5;
@@ -38,14 +40,12 @@ void each_pull(const std::vector<TensionSpring>& springs, const SpringTensions& 
       if (tension[s] > 0) pull_ends(s);
 }
 
-/// Moves all particles to where they were, of which all are told from then on.
-void put_back(SparseField& from, Vec3Field& position) {
-  if (from.is_everywhere()) {
-    position = from.values();
-    return;
-  }
-  for (const std::uint32_t i : from.particles()) position.set(i, from[i]);
-  from.everywhere() = position;
+/// `from` becomes where all particles were, of which it tells those that have moved.
+void tell_all(const Vec3Field& position, SparseField& from) {
+  if (from.is_everywhere()) return;
+  Vec3Field all = position;
+  for (const std::uint32_t i : from.particles()) all.set(i, from[i]);
+  from.everywhere() = all;
 }
 
 bool is_finite(const Vec3Field& field) {
@@ -102,27 +102,26 @@ void TensionSolver::add_grid_force(const std::vector<double>& tension, const Vec
 }
 
 void TensionSolver::hold(const SpringTensions& tension, double time_step, SpringTensions& held) const {
+  if (unreachable_) return held.clear();
   const double per_square = 1 / (time_step * time_step);
-  const auto part = [&](std::size_t s) { return std::min(tension[s], hold_[s] * per_square); };
-  held.clear();
-  if (unreachable_) return;
-  std::vector<double>& values = held.write();
-  if (!tension.is_few()) {
-    for (std::size_t s = 0; s < values.size(); ++s) values[s] = part(s);
-    return held.list_held();
-  }
-  std::vector<std::uint32_t> springs(tension.held().begin(), tension.held().end());
-  for (const std::uint32_t s : springs) values[s] = part(s);
-  held.list_held(springs);
+  held.copy(tension);
+  held.lower([&](std::size_t s) { return hold_[s] * per_square; });
 }
 
 /// Rounds until the residual is small enough or the bound on rounds is reached.
-void TensionSolver::run_rounds(const TensionTask& task, TensionRounds& rounds, const TensionProblem& problem,
-                               TensionReport& report) const {
-  rounds.begin(task, problem);
+void TensionSolver::run_rounds(const TensionTask& task, bool by_lines, const ClothSystem& system,
+                               SpringTensions& tension, Vec3Field& position, TensionReport& report) {
+  TensionRounds& rounds = rounds_for(by_lines, system);
+  rounds.begin(task, {system.inverse_mass, tension, position, from_, over_});
   TensionResidual residual = rounds.evaluate();
   int count = 0, rounds_to_aim = 0;
   while (!residual.within(task.tolerance) && count < max_tension_rounds) {
+    if (by_lines && grid_ && (rounds.have_outgrown() || count >= most_rounds_of_few)) {
+      rounds.end(true);
+      report.rounds += count;
+      tell_all(position, from_);
+      return run_rounds(task, false, system, tension, position, report);
+    }
     if (residual.within(deformation_.tolerance) && ++rounds_to_aim > max_rounds_to_aim) break;
     rounds.sweep_lines(count % 2 == 1);
     ++count, ++report.line_sweeps;
@@ -134,7 +133,7 @@ void TensionSolver::run_rounds(const TensionTask& task, TensionRounds& rounds, c
   report.rounds += count;
   report.excess = residual.excess, report.slack = residual.slack;
   report.converged = residual.within(deformation_.tolerance);
-  rounds.end();
+  rounds.end(count > 0);
 }
 
 /// Replaces positions and tensions by the nearest shape to the positions without tensions, and its
@@ -164,40 +163,38 @@ void TensionSolver::restart_from_nearest(const TensionTask& task, const ClothSys
   tension.list_held();
 }
 
-/// Finds over_. False: there are more than `most`, and not all of them are found.
-bool TensionSolver::find_over(const SpringTensions& tension, Vec3Field& position, std::size_t most) {
+/// Finds over_; of a grid no more after it has more than `most`.
+void TensionSolver::find_over(const SpringTensions& tension, Vec3Field& position, std::size_t most) {
   over_.clear();
-  if (grid_) return find_over_of_grid(tension.values(), position, most);
-  for (std::size_t s = 0; s < springs_.size(); ++s)
-    if (springs_[s].excess(position) > 0) over_.push_back(static_cast<std::uint32_t>(s));
-  return over_.size() <= most;
-}
-
-/// Looks at the springs of a row only where the longest is over the limit.
-bool TensionSolver::find_over_of_grid(const std::vector<double>& tension, Vec3Field& position,
-                                      std::size_t most) {
-  const GridNodes nodes{position.x(), position.y(), position.z(), position.x()};  // weights are not used
-  for (const GridFamily& family : grid_->families) {
-    const std::ptrdiff_t offset = family.down * grid_->columns + family.across;
-    const auto width = static_cast<std::size_t>(family.width());
-    for (int row = 0; row < family.rows; ++row) {
-      const std::ptrdiff_t i = static_cast<std::ptrdiff_t>(row) * grid_->columns + family.begin;
-      const std::size_t first = family.first_spring + static_cast<std::size_t>(row) * width;
-      const double longest =
-          kernels_->measure_row(nodes, i, offset, tension.data() + first, family.width(), false).longest;
-      if (longest <= family.limit * family.limit) continue;
-      for (std::size_t s = first; s < first + width; ++s) {
-        const Vec3 d = position[springs_[s].second] - position[springs_[s].first];
-        if (d.squaredNorm() > family.limit * family.limit) over_.push_back(static_cast<std::uint32_t>(s));
-      }
-      if (over_.size() > most) return false;
-    }
+  if (!grid_) {
+    for (std::size_t s = 0; s < springs_.size(); ++s)
+      if (springs_[s].excess(position) > 0 && hold_[s] > 0) over_.push_back(static_cast<std::uint32_t>(s));
+    return;
   }
-  return true;
+  for (const GridFamily& family : grid_->families)
+    for (int row = 0; row < family.rows && over_.size() <= most; ++row)
+      find_over_of_row(family, row, tension.values(), position);
 }
 
-TensionRounds& TensionSolver::rounds_for(bool few, const ClothSystem& system) {
-  const bool by_lines = few || !grid_;
+/// Looks at single springs only where the longest is over the limit. Those between two pins have no hold_.
+void TensionSolver::find_over_of_row(const GridFamily& family, int row, const std::vector<double>& tension,
+                                     Vec3Field& position) {
+  const GridNodes nodes{position.x(), position.y(), position.z(), position.x()};  // weights are not used
+  const std::ptrdiff_t offset = family.down * grid_->columns + family.across,
+                       i = static_cast<std::ptrdiff_t>(row) * grid_->columns + family.begin;
+  const auto width = static_cast<std::size_t>(family.width());
+  const std::size_t first = family.first_spring + static_cast<std::size_t>(row) * width;
+  const double square = family.limit * family.limit;
+  if (kernels_->measure_row(nodes, i, offset, tension.data() + first, family.width(), false).longest <=
+      square)
+    return;
+  for (std::size_t s = first; s < first + width; ++s) {
+    const Vec3 d = position[springs_[s].second] - position[springs_[s].first];
+    if (d.squaredNorm() > square && hold_[s] > 0) over_.push_back(static_cast<std::uint32_t>(s));
+  }
+}
+
+TensionRounds& TensionSolver::rounds_for(bool by_lines, const ClothSystem& system) {
   std::unique_ptr<TensionRounds>& rounds = by_lines ? line_rounds_ : grid_rounds_;
   if (!rounds) rounds = by_lines ? make_line_rounds(springs_, system) : make_grid_rounds(*grid_);
   return *rounds;
@@ -211,8 +208,9 @@ TensionReport TensionSolver::solve(const ClothSystem& system, double time_step, 
     report.excess = std::nan("");
     return report;
   }
-  const std::size_t most = grid_ ? SpringTensions::most(springs_.size()) : springs_.size();
-  const bool few = find_over(tension, position, most) && tension.is_few();
+  const std::size_t most = SpringTensions::most(springs_.size());
+  over_.clear();
+  if (!grid_ || tension.is_few()) find_over(tension, position, most);
   if (over_.empty() && !tension.any()) {
     report.converged = true;
     return report;
@@ -220,18 +218,16 @@ TensionReport TensionSolver::solve(const ClothSystem& system, double time_step, 
   const TensionTask task{.time_step = time_step,
                          .tolerance = std::min(target_residual, deformation_.tolerance),
                          .softness = unreachable_ ? soft_springs : 0};
-  const auto run = [&](bool by_lines) {
-    const TensionProblem problem{system.inverse_mass, tension, position, from_, over_};
-    run_rounds(task, rounds_for(by_lines, system), problem, report);
-  };
+  const bool by_lines = !grid_ || (tension.is_few() && tension.held().size() + over_.size() <= most);
   first_.copy(tension);
-  run(few);
+  run_rounds(task, by_lines, system, tension, position, report);
   if (!report.converged && !unreachable_) {
-    put_back(from_, position);
+    tell_all(position, from_);
+    position = from_.values();
     tension.copy(first_);
     restart_from_nearest(task, system, tension, position, report);
-    if (!grid_) find_over(tension, position, springs_.size());
-    run(false);
+    if (!grid_) find_over(tension, position, most);
+    run_rounds(task, !grid_, system, tension, position, report);
   }
   if (unreachable_) report.excess = excess(position);
   return report;

@@ -11,8 +11,8 @@
 // Each round is one sweep over the lines of springs, in which the tensions of a line are solved for together
 // (Thomas' algorithm), then a Newton step for all tensions by conjugate gradients with the lines as
 // preconditioner, projected to t >= 0. Where rounds do not converge, an interior point method provides a new
-// start. Of a grid, few springs that are over their limit or have a tension are solved for spring by spring,
-// many of them with all springs of the grid side by side.
+// start. Of a grid, springs that are over their limit or have a tension are solved for one by one while they
+// are few, and with all springs of the grid side by side when they become many.
 #pragma once
 
 #include <limits>
@@ -73,12 +73,13 @@ class TensionSolver {
   bool unreachable() const { return unreachable_; }
 
  private:
-  bool find_over(const SpringTensions& tension, Vec3Field& position, std::size_t most);
-  bool find_over_of_grid(const std::vector<double>& tension, Vec3Field& position, std::size_t most);
-  TensionRounds& rounds_for(bool few, const ClothSystem& system);
+  void find_over(const SpringTensions& tension, Vec3Field& position, std::size_t most);
+  void find_over_of_row(const GridFamily& family, int row, const std::vector<double>& tension,
+                        Vec3Field& position);
+  TensionRounds& rounds_for(bool by_lines, const ClothSystem& system);
   void add_grid_force(const std::vector<double>& tension, const Vec3Field& position, Vec3Field& force) const;
-  void run_rounds(const TensionTask& task, TensionRounds& rounds, const TensionProblem& problem,
-                  TensionReport& report) const;
+  void run_rounds(const TensionTask& task, bool by_lines, const ClothSystem& system, SpringTensions& tension,
+                  Vec3Field& position, TensionReport& report);
   void restart_from_nearest(const TensionTask& task, const ClothSystem& system, SpringTensions& tension,
                             Vec3Field& position, TensionReport& report);
 
@@ -94,7 +95,7 @@ class TensionSolver {
   // Of the present solve.
   SparseField from_;                 ///< m
   SpringTensions first_;             ///< N
-  std::vector<std::uint32_t> over_;  ///< springs over their limit, unless these are many of a grid
+  std::vector<std::uint32_t> over_;  ///< springs over their limit, unless many of a grid are taut
   double shortest_ = 0;
   bool unreachable_;
 };

@@ -27,7 +27,7 @@ std::size_t end_at(const TensionSpring& spring, std::size_t particle) {
 
 /// At every particle the straightest pair of springs is joined first, then the straightest of the rest, and
 /// so on.
-Followers followers_of(const std::vector<TensionSpring>& springs, const ClothSystem& system) {
+Followers followers_of(std::span<const TensionSpring> springs, const ClothSystem& system) {
   std::vector<std::vector<std::size_t>> around(system.pinned.size());
   for (std::size_t s = 0; s < springs.size(); ++s) {
     around[springs[s].first].push_back(s);
@@ -90,7 +90,7 @@ double largest_excess(const std::vector<TensionSpring>& springs, const Vec3Field
   return largest;
 }
 
-SpringLines spring_lines(const std::vector<TensionSpring>& springs, const ClothSystem& system) {
+SpringLines spring_lines(std::span<const TensionSpring> springs, const ClothSystem& system) {
   const Followers followers = followers_of(springs, system);
   SpringLines lines;
   lines.springs.reserve(springs.size());

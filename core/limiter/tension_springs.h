@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "cloth/cloth_system.h"
@@ -40,6 +41,6 @@ struct SpringLines {
   std::size_t count() const { return begin.size() - 1; }
 };
 
-SpringLines spring_lines(const std::vector<TensionSpring>& springs, const ClothSystem& system);
+SpringLines spring_lines(std::span<const TensionSpring> springs, const ClothSystem& system);
 
 }  // namespace cloth

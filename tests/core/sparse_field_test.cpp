@@ -36,6 +36,7 @@ TEST(SparseField, CountsEveryParticleOnceItIsWrittenEverywhere) {
   field.everywhere().add(0, Vec3(0, 1, 0));
   field.add(1, Vec3(0, 0, 1));
   EXPECT_TRUE(field.is_everywhere());
+  EXPECT_TRUE(field.particles().empty());
   EXPECT_TRUE(field.has(0) && field.has(1) && field.has(2));
   Vec3Field sum(3);
   add_scaled(2, field, sum);
@@ -62,6 +63,10 @@ TEST(SpringTensions, ListTheSpringsThatHaveOneWhileTheseAreFew) {
   other.copy(tension);
   EXPECT_EQ(other, tension);
   EXPECT_EQ(other[12], 0);
+  other.lower([](std::size_t s) { return s == 7 ? 0.5 : 0.0; });
+  EXPECT_EQ(other[7], 0.5);
+  EXPECT_EQ(std::vector<std::uint32_t>(other.held().begin(), other.held().end()),
+            (std::vector<std::uint32_t>{7}));
   tension.write()[9] = 1;  // a third of 64
   tension.list_held();
   EXPECT_FALSE(tension.is_few());

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 #include "cloth/grid.h"
@@ -232,6 +233,104 @@ TEST(TensionSolver, FindsSpringsThatBecomeTautWhileItSolves) {
   EXPECT_GT(tension.held().size(), 10u);
   EXPECT_NEAR(solver.excess(x), report.excess, 1e-12);
   expect_solution(solver, cloth.deformation.tolerance, tension, x);
+}
+
+/// Hung from its top edge, in its plane, with columns at their limits less a little; below its top row moved
+/// down, so that only the springs of the first row are over their limits, and then one row after the other.
+Vec3Field lowered_beside_its_limits(const Hung& cloth) {
+  Vec3Field x = cloth.system.start;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const double down = cloth.system.start.y()[0] - x.y()[i];
+    x.y()[i] -= (cloth.deformation.rate - 1e-9) * down;
+    if (!cloth.system.pinned[i]) x.y()[i] -= 0.05 * cloth.spacing();
+  }
+  return x;
+}
+
+TEST(TensionSolver, CarriesAFrontOfTautSpringsAcrossTheCloth) {
+  Hung cloth(17, 0.0, {NamedPin::top_edge});
+  cloth.scene.cloth.rows = 129;
+  cloth.scene.cloth.height = 8;
+  cloth.system = make_grid(cloth.scene.cloth, *cloth.scene.springs);
+  ClothSystem line = cloth.system;
+  line.rows = 1, line.columns = cloth.system.size();  // no longer a grid
+  const Vec3Field from = lowered_beside_its_limits(cloth);
+  for (const ClothSystem* system : std::array<const ClothSystem*, 2>{&cloth.system, &line}) {
+    TensionSolver solver(cloth.deformation, *system);
+    SpringTensions tension = no_tension(solver);
+    Vec3Field x = from;
+    const TensionReport report = solver.solve(*system, step, tension, x);
+    EXPECT_TRUE(report.converged);
+    EXPECT_EQ(report.factorisations, 0) << "as rounds over all springs at once need none";
+    EXPECT_FALSE(tension.is_few());
+    expect_solution(solver, cloth.deformation.tolerance, tension, x);
+    for (std::size_t i = 0; i < x.size(); ++i)
+      ASSERT_EQ(solver.moved_from().has(i) ? solver.moved_from()[i] : x[i], from[i]) << i;
+  }
+}
+
+TEST(TensionSolver, TellsWhereParticlesWereThoughItBeganAnew) {
+  Random random;
+  const Hung cloth(33, 0.01);
+  ClothSystem line = cloth.system;
+  line.rows = 1, line.columns = cloth.system.size();
+  Vec3Field from = cloth.system.start;
+  for (std::size_t i = 500; i < 503; ++i) from.add(i, random.vector(10 * cloth.spacing()));
+  int begun_anew = 0;
+  for (const ClothSystem* system : std::array<const ClothSystem*, 2>{&cloth.system, &line}) {
+    TensionSolver solver(cloth.deformation, *system);
+    SpringTensions tension = no_tension(solver);
+    Vec3Field x = from;
+    const TensionReport report = solver.solve(*system, step, tension, x);
+    begun_anew += report.factorisations > 0 ? 1 : 0;
+    EXPECT_TRUE(report.converged);
+    expect_solution(solver, cloth.deformation.tolerance, tension, x);
+    for (std::size_t i = 0; i < x.size(); ++i)
+      ASSERT_EQ(solver.moved_from().has(i) ? solver.moved_from()[i] : x[i], from[i]) << i;
+  }
+  EXPECT_GT(begun_anew, 0);
+}
+
+/// Whatever it solved before, and with tensions that a checkpoint kept.
+TEST(TensionSolver, GivesTheSameBitsWhereTensionsBecomeManyAndFewAgain) {
+  Random random;
+  const Hung cloth(33, 0.1);
+  TensionSolver solver(cloth.deformation, cloth.system);
+  SpringTensions tension = no_tension(solver);
+  std::vector<bool> few;
+  for (const double strain : {0.0, 0.11, 0.0, 0.0, 0.11}) {
+    Vec3Field x = strain > 0 ? stretched(cloth.system, strain, 0.01 * cloth.spacing(), random)
+                             : stretched_at(cloth.system, 33 * 16 + 16, 2.5 * cloth.spacing(), 0.12, random);
+    TensionSolver other(cloth.deformation, cloth.system);
+    SpringTensions kept(tension.values());
+    Vec3Field y = x;
+    ASSERT_TRUE(solver.solve(cloth.system, step, tension, x).converged);
+    ASSERT_TRUE(other.solve(cloth.system, step, kept, y).converged);
+    EXPECT_EQ(x, y);
+    EXPECT_EQ(tension, kept);
+    few.push_back(tension.is_few());
+    EXPECT_EQ(std::vector<std::uint32_t>(tension.held().begin(), tension.held().end()),
+              std::vector<std::uint32_t>(kept.held().begin(), kept.held().end()));
+    if (strain == 0) tension.clear();  // as a step does that finds no spring over its limit
+  }
+  EXPECT_EQ(few, (std::vector<bool>{true, false, false, true, false}));
+}
+
+TEST(TensionSolver, GivesSpringsBetweenTwoPinsNoTension) {
+  Random random;
+  const Hung cloth(33, 0.01, {NamedPin::top_edge});
+  TensionSolver solver(cloth.deformation, cloth.system);
+  SpringTensions tension = no_tension(solver);
+  tension.write()[3] = 1e-3;  // in the top row
+  tension.list_held();
+  ASSERT_TRUE(cloth.system.pinned[solver.springs()[3].first] &&
+              cloth.system.pinned[solver.springs()[3].second]);
+  Vec3Field x = stretched_at(cloth.system, 33 * 16 + 16, 3 * cloth.spacing(), 0.02, random);
+  for (std::size_t i = 0; i < 33; ++i) x.x()[i] *= 1.5;  // pins where no spring between them can be kept
+  for (std::size_t i = 33; i < x.size(); ++i) x.x()[i] *= 1 + 0.5 * std::pow(1 - double(i / 33) / 32, 40.0);
+  const TensionReport report = solver.solve(cloth.system, step, tension, x);
+  EXPECT_GT(report.rounds, 0);
+  EXPECT_EQ(tension[3], 0);
 }
 
 TEST(TensionSolver, PullsByFewTensionsAsByAll) {

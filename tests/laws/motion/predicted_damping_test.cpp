@@ -2,6 +2,7 @@
 // limit from both sides, its order, the fused pass against the general method, and when it is chosen.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -101,7 +102,7 @@ Scene damped_scene() {
 
 /// A wind brush is known to no pass. This one blows nowhere.
 BrushGust brush_that_touches_nothing() {
-  return {.velocity = {}, .cursor = {1e6, 1e6}, .radius = 1};
+  return {.velocity = Vec3::Zero(), .cursor = {1e6, 1e6}, .radius = 1};
 }
 
 void expect_order_two(const Scene& scene, EndVelocity end, bool fused) {
@@ -228,7 +229,7 @@ TEST(PredictedDamping, IsTheSameInThePassAndInTheGeneralMethod) {
 Scene taut_scene() {
   Scene scene = damped_scene();
   scene.cloth.rows = 17, scene.cloth.columns = 21;
-  scene.deformation = Deformation{.rate = 0.002, .tolerance = 1e-7};
+  scene.deformation = Deformation{.rate = 0.02, .tolerance = 1e-7};
   return scene;
 }
 
@@ -237,14 +238,14 @@ struct LimitedRun {
   StepLimiter limiter;
   Work work;
   double limiter_work = 0;
-  int held = 0;  ///< steps that began with tensions
+  int held = 0, few = 0;  ///< steps that began with tensions, and with few
 
   LimitedRun(const Scene& scene, const ClothSystem& system, Integrator& method)
       : state(starting_state(system)), limiter(*scene.deformation, system, false) {
     method.set_drift_constraint(&limiter);
   }
   void step(Integrator& method, ForceModel& forces, const StepTimes& times) {
-    held += limiter.holds() ? 1 : 0;
+    held += limiter.holds() ? 1 : 0, few += limiter.holds() && limiter.holds_few() ? 1 : 0;
     limiter.begin_step(times.step, state, false);
     method.step(forces, times, state, work);
     limiter.end_step(state);
@@ -255,9 +256,9 @@ struct LimitedRun {
 TEST(PredictedDamping, IsTheSameInThePassAndInTheGeneralMethodWhereTheRateHoldsSprings) {
   const Scene scene = taut_scene();
   const ClothSystem system = make_cloth(scene);
-  ForceModel forces(scene, system);
+  ForceModel forces(scene, system), others(scene, system);
   ASSERT_TRUE(FusedPredictedVerlet::suits(forces));
-  ASSERT_TRUE(knows_damping_at(system, forces.swept()));
+  ASSERT_TRUE(DampingAt::suits(system, forces.swept()));
   FusedPredictedVerlet fused;
   Verlet general(EndVelocity::predicted);
   LimitedRun a(scene, system, fused), b(scene, system, general);
@@ -265,15 +266,16 @@ TEST(PredictedDamping, IsTheSameInThePassAndInTheGeneralMethodWhereTheRateHoldsS
   for (int n = 0; n < 800; ++n) {
     const StepTimes times{n * h, (n + 1) * h, h};
     a.step(fused, forces, times);
-    b.step(general, forces, times);
+    b.step(general, others, times);
   }
-  ASSERT_GT(a.held, 100);
+  ASSERT_GT(a.few, 100) << a.held;
+  ASSERT_GT(a.held - a.few, 20);
   EXPECT_EQ(a.held, b.held);
   // Tensions are solved for to a tolerance.
   EXPECT_LT(rms_distance(a.state.position, b.state.position), 1e-6);
   EXPECT_NEAR(a.limiter_work, b.limiter_work, 1e-3 * std::abs(b.limiter_work));
   EXPECT_NEAR(a.work.air, b.work.air, 1e-5 * std::abs(b.work.air));
-  EXPECT_NEAR(a.work.damping_loss, b.work.damping_loss, 5e-6 * b.work.damping_loss);
+  EXPECT_NEAR(a.work.damping_loss, b.work.damping_loss, 1e-6 * b.work.damping_loss);
 }
 
 /// The balance of energy closes as well with the damping of single particles: its error falls with h^2.
@@ -298,22 +300,23 @@ TEST(DampingAt, IsWhatTheForcesOfAllParticlesAreLessWithAVelocityThanWithout) {
   for (const Scene& scene : {damped_scene(), narrow, builtin_scene("flag"), builtin_scene("wind")}) {
     const ClothSystem system = make_cloth(scene);
     ForceModel forces(scene, system);
-    ASSERT_TRUE(knows_damping_at(system, forces.swept())) << scene.title;
+    ASSERT_TRUE(DampingAt::suits(system, forces.swept())) << scene.title;
     const ClothState state = crumpled_state(system, 0.01, 0.3, random);
     Vec3Field moving(state.position.size()), resting = moving;
     forces.update(state.position, 0.3);
     forces.force(state.position, state.velocity, moving);
     forces.force(state.position, Vec3Field(state.position.size()), resting);
     const double largest = std::max(largest_distance(moving, resting), 1e-12);
+    const DampingAt damping(system, forces.swept());
     SparseField change;
     change.clear(state.position.size());
     double expected = 0;
     for (std::size_t i = 0; i < state.position.size(); ++i) {
-      const Vec3 product = damping_at(system, forces.swept(), state.position, state.velocity, i);
+      const Vec3 product = damping.product(i, state.position, state.velocity);
       ASSERT_LE((resting[i] - moving[i] - product).norm(), 1e-12 * largest) << scene.title << " " << i;
       if (i % 7 == 0) change.add(i, random.vector(1)), expected -= product.dot(change[i]);
     }
-    EXPECT_NEAR(power_of_damping(system, forces.swept(), state.position, state.velocity, change), expected,
+    EXPECT_NEAR(damping.power(state.position, state.velocity, change), expected,
                 1e-12 * (largest * static_cast<double>(change.size())));
   }
 }
@@ -323,7 +326,7 @@ TEST(DampingAt, IsNotKnownOfMeshesMaterialsAndDampingTimes) {
     const Scene scene = builtin_scene(name);
     const ClothSystem system = make_cloth(scene);
     const ForceModel forces(scene, system);
-    EXPECT_FALSE(knows_damping_at(system, forces.swept())) << name;
+    EXPECT_FALSE(DampingAt::suits(system, forces.swept())) << name;
   }
 }
 
@@ -347,8 +350,11 @@ TEST(PredictedDamping, HasTheSameBitsOnAnyNumberOfThreads) {
 TEST(PredictedDamping, GoesOnFromACheckpointToTheBit) {
   const Scene scene = builtin_scene("flag");
   Simulation simulation(scene);
-  ASSERT_FALSE(simulation.advance(300));
+  ASSERT_FALSE(simulation.advance(2300));  // when it hangs taut from its pole
   const Checkpoint there = simulation.checkpoint();
+  const auto held = std::count_if(there.tension.begin(), there.tension.end(), [](double t) { return t > 0; });
+  ASSERT_GT(held, 1);
+  ASSERT_TRUE(SpringTensions(there.tension).is_few());
   ASSERT_FALSE(simulation.advance(300));
   const ClothState state = simulation.state();
   const double loss = simulation.measure().ledger.forces.damping_loss;

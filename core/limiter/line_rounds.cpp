@@ -201,7 +201,7 @@ bool LineRounds::make_active(std::uint32_t place, Active& active) const {
   active.spring = spring.spring, active.first = spring.first, active.second = spring.second;
   active.place = place, active.rest_length = spring.rest_length;
   active.both = both, active.over = over;
-  active.direction = length > 0 ? Vec3(d / length) : Vec3(Vec3::Zero());
+  active.direction = (length > 0 ? 1 / length : 0) * d;
   return true;
 }
 

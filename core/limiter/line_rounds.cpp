@@ -8,53 +8,16 @@
 #include <utility>
 
 #include "cloth/sums.h"
+#include "limiter/placed_springs.h"
 #include "limiter/tension_rounds.h"
 
 namespace cloth {
 namespace {
 
-struct PlacedSpring {
-  std::uint32_t first, second;  ///< particles
-  std::uint32_t line, spring;   ///< the line it is in; its number among all springs
-  double rest_length, limit;    ///< m
-};
-
-/// Springs in the order of their lines. A place is an index into that order.
-struct PlacedSprings {
-  std::vector<PlacedSpring> at;
-  std::vector<std::uint32_t> place;          ///< of each spring
-  std::vector<std::uint32_t> around, begin;  ///< places of the springs at each particle, from begin on
-};
-
-PlacedSprings placed_springs(std::span<const TensionSpring> springs, const ClothSystem& system) {
-  const SpringLines lines = spring_lines(springs, system);
-  const auto small = [](std::size_t n) { return static_cast<std::uint32_t>(n); };
-  PlacedSprings placed;
-  placed.place.resize(springs.size());
-  placed.at.reserve(springs.size());
-  for (std::size_t line = 0; line < lines.count(); ++line)
-    for (std::size_t k = lines.begin[line]; k < lines.begin[line + 1]; ++k) {
-      const std::size_t s = lines.springs[k];
-      const TensionSpring& spring = springs[s];
-      placed.place[s] = small(placed.at.size());
-      placed.at.push_back({small(spring.first), small(spring.second), small(line), small(s),
-                           spring.rest_length, spring.limit});
-    }
-  placed.begin.assign(static_cast<std::size_t>(system.size()) + 2, 0);
-  for (const TensionSpring& spring : springs)
-    for (const std::size_t end : {spring.first, spring.second}) ++placed.begin[end + 2];
-  for (std::size_t i = 2; i < placed.begin.size(); ++i) placed.begin[i] += placed.begin[i - 1];
-  placed.around.resize(2 * springs.size());
-  for (std::size_t s = 0; s < springs.size(); ++s)
-    for (const std::size_t end : {springs[s].first, springs[s].second})
-      placed.around[placed.begin[end + 1]++] = placed.place[s];
-  return placed;
-}
-
 class LineRounds : public TensionRounds {
  public:
   LineRounds(std::span<const TensionSpring> springs, const ClothSystem& system)
-      : placed_(placed_springs(springs, system)),
+      : placed_(springs, system),
         is_candidate_(springs.size(), 0),
         is_moved_(static_cast<std::size_t>(system.size()), 0),
         node_(static_cast<std::size_t>(system.size())) {}

@@ -302,7 +302,12 @@ IntegratorReport Xpbd::step(ForceModel& forces, const StepTimes& times, ClothSta
     forces.update_external(state.position, end);
     ++report.force_evaluations;
     if (contact_) contact_->begin(state);
-    if (constraint_) constraint_->before_kick(h, h, state);
+    if (constraint_) {
+      // As forces, tensions would act where their springs were. A substep is long for that: it would make
+      // energy.
+      constraint_->forget_tensions();
+      constraint_->before_kick(h, h, state);
+    }
     const double changed = substep(forces, parts, h, n + 1 == substeps_, state.position, state.velocity);
     report.iterations += iterations_;
     if (n + 1 == substeps_) {
@@ -313,9 +318,7 @@ IntegratorReport Xpbd::step(ForceModel& forces, const StepTimes& times, ClothSta
     add_scaled(h, state.velocity, state.position);
     if (constraint_) constraint_->after_drift(0, state);
     if (contact_) {
-      const auto outcome = contact_->correct({end - h, end, h}, state);
-      if (outcome == InnerStepContact::Outcome::ended) break;
-      if (outcome == InnerStepContact::Outcome::changed && constraint_) constraint_->forget_tensions();
+      if (contact_->correct({end - h, end, h}, state) == InnerStepContact::Outcome::ended) break;
     }
     if (forces.has_power()) {
       forces.update(state.position, end);

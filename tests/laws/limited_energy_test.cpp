@@ -87,6 +87,20 @@ TEST(VerletWithARate, MakesNoEnergyOnAFinerClothEither) {
   }
 }
 
+TEST(XpbdWithARate, MakesNoEnergyAtTheAutomaticStep) {
+  for (const char* name : {"flag", "wind"})
+    for (const double rate : {0.1, 0.03, 0.01, 0.001}) {
+      Scene scene = builtin_scene(name);
+      scene.deformation->rate = rate;
+      scene.integrator = {.method = "xpbd"};
+      scene.integrator.time_step = resolved_time_step(scene).value();
+      scene.duration = 0.5;
+      const Account account = account_of(scene);
+      EXPECT_GT(account.exchanged, 0.5);
+      EXPECT_LE(account.rise, 0.1 * account.exchanged) << name << " at " << rate;  // 0.07 without a rate
+    }
+}
+
 /// What a solve leaves within the tolerance becomes speed, (what is left)/h, and that is not to heat the
 /// cloth.
 TEST(AShortStep, OfALimitedClothMakesNoMoreEnergyThanALongOne) {

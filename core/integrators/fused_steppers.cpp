@@ -67,8 +67,10 @@ IntegratorReport FusedSemiImplicitEuler::step(ForceModel& forces, const StepTime
                                               Work& work) {
   if (constraint_ && constraint_->holds()) return held_step(forces, times, state, work);
   if (constraint_) constraint_->before_kick(times.step, times.step, state);
-  const IntegratorReport report = FusedEuler::step(forces, times, state, work);
-  if (constraint_) constraint_->after_drift(0, state);
+  IntegratorReport report = FusedEuler::step(forces, times, state, work);
+  if (!constraint_) return report;
+  constraint_->after_drift(0, state);
+  if (constraint_->opening_change()) report.speed_squares.reset();
   return report;
 }
 

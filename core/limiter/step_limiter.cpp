@@ -53,7 +53,10 @@ void add_speed(const SparseField& from, const Vec3Field& to, double time_step, F
 }  // namespace
 
 StepLimiter::StepLimiter(const Deformation& deformation, const ClothSystem& system, bool unreachable)
-    : deformation_(deformation), system_(&system), limiter_(deformation, system, unreachable) {
+    : deformation_(deformation),
+      system_(&system),
+      mass_(system.total_mass()),
+      limiter_(deformation, system, unreachable) {
   if (deformation.solver != "auto") return;
   tensions_.emplace(deformation, system, unreachable);
   tension_ = held_ = SpringTensions(tensions_->springs().size());
@@ -143,7 +146,7 @@ bool StepLimiter::move(ClothState& state) {
 double StepLimiter::target_residual(const ClothState& state) const {
   constexpr double of_speed = 0.01, least = 0.01;  // of the tolerance
   const double kinetic = work_of_changes(*system_, state.velocity, state.velocity, -0.5);
-  const double speed = std::sqrt(2 * kinetic / system_->total_mass());
+  const double speed = std::sqrt(2 * kinetic / mass_);
   const double small = of_speed * time_step_ * speed / tensions_->shortest();
   return std::clamp(small, least * deformation_.tolerance, deformation_.tolerance);
 }

@@ -74,6 +74,7 @@ class StepLimiter : public DriftConstraint {
 
   Deformation deformation_;
   const ClothSystem* system_;
+  double mass_;  ///< kg, of the cloth
   DeformationLimiter limiter_;
   std::optional<TensionSolver> tensions_;  ///< none: solver "sweeps" or "direct"
   SpringTensions tension_;                 ///< N, at the end of the last step

@@ -112,12 +112,13 @@ bool Simulation::is_surely_slow(double speed_squares) const {
 }
 
 /// Finite positions and a finite sum of squares give finite positions; and where even the heaviest mass for
-/// all does not make the speeds too much, nothing has diverged. Only otherwise, and where a method without a
-/// limit or "auto" asks for it every few steps, the ledger is looked at.
+/// all does not make the speeds too much, nothing has diverged: unless contact, or a limiter after the
+/// method's step, has changed them since. Only otherwise, and where a method without a limit or "auto" asks
+/// for it every few steps, the ledger is looked at.
 std::optional<Divergence> Simulation::find_divergence(const IntegratorReport& report) {
   const bool looks = watches_ledger_ && run_.state.step % ledger_interval == 0;
-  if (!looks && report.speed_squares && was_finite_ && !limiter_ && !contact_ &&
-      is_surely_slow(*report.speed_squares))
+  const bool are_last = !contact_ && (!limiter_ || limits_drift_);
+  if (!looks && report.speed_squares && was_finite_ && are_last && is_surely_slow(*report.speed_squares))
     return std::nullopt;
   const auto x = run_.state.position.flat();
   // A sum of finite terms is finite short of overflow; one that is not asks for a closer look.

@@ -5,7 +5,6 @@
 #include "cloth/normals.h"
 
 namespace cloth {
-
 namespace {
 
 /// Whole rows in one run, or a part of each row in a run of its own.

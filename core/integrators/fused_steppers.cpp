@@ -147,7 +147,7 @@ void FusedPredictedVerlet::begin_force(ForceModel& forces, double time, ClothSta
 
 IntegratorReport FusedPredictedVerlet::step(ForceModel& forces, const StepTimes& times, ClothState& state,
                                             Work& work) {
-  const bool knows_damping = DampingAt::suits(forces.system(), forces.swept());
+  const bool knows_damping = constraint_ && DampingAt::suits(forces.system(), forces.swept());
   if (constraint_ && constraint_->holds() && !(knows_damping && constraint_->holds_few()))
     return Verlet::step(forces, times, state, work);
   IntegratorReport report{.force_evaluations = 1};

@@ -317,9 +317,7 @@ IntegratorReport Xpbd::step(ForceModel& forces, const StepTimes& times, ClothSta
 
     add_scaled(h, state.velocity, state.position);
     if (constraint_) constraint_->after_drift(0, state);
-    if (contact_) {
-      if (contact_->correct({end - h, end, h}, state) == InnerStepContact::Outcome::ended) break;
-    }
+    if (contact_ && contact_->correct({end - h, end, h}, state) == InnerStepContact::Outcome::ended) break;
     if (forces.has_power()) {
       forces.update(state.position, end);
       ++report.force_evaluations;

@@ -37,4 +37,11 @@ Scene smooth_scene(int rows, int columns) {
   return scene;
 }
 
+Scene damped_smooth_scene(int rows, int columns) {
+  Scene scene = smooth_scene(rows, columns);
+  scene.springs->damping = 0.05;
+  scene.air->skin_friction = 0.002;
+  return scene;
+}
+
 }  // namespace cloth::test

@@ -18,5 +18,7 @@ SpringMaterial only(SpringFamily family, double stiffness);
 /// Everything that moves smoothly: springs, viscous damping, gravity, air, wind and gust; hung by two
 /// corners.
 Scene smooth_scene(int rows, int columns);
+/// The same with dampers along springs and skin friction.
+Scene damped_smooth_scene(int rows, int columns);
 
 }  // namespace cloth::test

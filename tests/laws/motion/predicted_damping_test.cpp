@@ -7,10 +7,9 @@
 #include <random>
 
 #include "cloth/grid.h"
-#include "forces/damping_at.h"
 #include "integrators/fused_steppers.h"
 #include "integrators/registry.h"
-#include "limiter/step_limiter.h"
+#include "limiter/spring_tensions.h"
 #include "measure/energy.h"
 #include "measure/stability_limit.h"
 #include "scene/builtin_scenes.h"
@@ -19,7 +18,6 @@
 #include "simulation/stages.h"
 #include "simulation/time_step.h"
 #include "support/direct_run.h"
-#include "support/random.h"
 #include "support/scenes.h"
 #include "support/states.h"
 
@@ -93,13 +91,6 @@ TEST(PredictedDamping, IsStableBelowItsLimitAndGrowsAboveIt) {
   }
 }
 
-Scene damped_scene() {
-  Scene scene = smooth_scene(6, 6);
-  scene.springs->damping = 0.05;
-  scene.air->skin_friction = 0.002;
-  return scene;
-}
-
 /// A wind brush is known to no pass. This one blows nowhere.
 BrushGust brush_that_touches_nothing() {
   return {.velocity = Vec3::Zero(), .cursor = {1e6, 1e6}, .radius = 1};
@@ -132,11 +123,11 @@ void expect_order_two(const Scene& scene, EndVelocity end, bool fused) {
 }
 
 TEST(PredictedDamping, IsOfOrderTwoWithDampersDragSkinFrictionWindAndGusts) {
-  expect_order_two(damped_scene(), EndVelocity::predicted, true);
+  expect_order_two(damped_smooth_scene(6, 6), EndVelocity::predicted, true);
 }
 
 TEST(PredictedDamping, IsOfOrderTwoInTheGeneralMethodToo) {
-  expect_order_two(damped_scene(), EndVelocity::predicted, false);
+  expect_order_two(damped_smooth_scene(6, 6), EndVelocity::predicted, false);
 }
 
 TEST(CorrectedDamping, MovesAnOscillatorByItsTraceAndDeterminant) {
@@ -189,7 +180,7 @@ TEST(CorrectedDamping, MakesNoEnergyInAClothAtBothOfItsBounds) {
 }
 
 TEST(CorrectedDamping, IsOfOrderTwoWithDampersDragSkinFrictionWindAndGusts) {
-  expect_order_two(damped_scene(), EndVelocity::corrected, false);
+  expect_order_two(damped_smooth_scene(6, 6), EndVelocity::corrected, false);
 }
 
 Scene material_in_wind() {
@@ -201,7 +192,7 @@ Scene material_in_wind() {
 }
 
 TEST(PredictedDamping, IsTheSameInThePassAndInTheGeneralMethod) {
-  for (const Scene& scene : {damped_scene(), material_in_wind()}) {
+  for (const Scene& scene : {damped_smooth_scene(6, 6), material_in_wind()}) {
     const ClothSystem system = make_cloth(scene);
     ForceModel forces(scene, system);
     ASSERT_TRUE(FusedPredictedVerlet::suits(forces));
@@ -222,111 +213,6 @@ TEST(PredictedDamping, IsTheSameInThePassAndInTheGeneralMethod) {
     EXPECT_NEAR(work_a.air, work_b.air, 1e-9 * std::abs(work_b.air));
     EXPECT_GT(work_a.damping_loss, 0);
     EXPECT_NE(work_a.air, 0);
-  }
-}
-
-/// A sheet that falls into its pins, in wind, beyond a small rate.
-Scene taut_scene() {
-  Scene scene = damped_scene();
-  scene.cloth.rows = 17, scene.cloth.columns = 21;
-  scene.deformation = Deformation{.rate = 0.02, .tolerance = 1e-7};
-  return scene;
-}
-
-struct LimitedRun {
-  ClothState state;
-  StepLimiter limiter;
-  Work work;
-  double limiter_work = 0;
-  int held = 0, few = 0;  ///< steps that began with tensions, and with few
-
-  LimitedRun(const Scene& scene, const ClothSystem& system, Integrator& method)
-      : state(starting_state(system)), limiter(*scene.deformation, system, false) {
-    method.set_drift_constraint(&limiter);
-  }
-  void step(Integrator& method, ForceModel& forces, const StepTimes& times) {
-    held += limiter.holds() ? 1 : 0, few += limiter.holds() && limiter.holds_few() ? 1 : 0;
-    limiter.begin_step(times.step, state, false);
-    method.step(forces, times, state, work);
-    limiter.end_step(state);
-    limiter_work += limiter.work().value_or(0);
-  }
-};
-
-TEST(PredictedDamping, IsTheSameInThePassAndInTheGeneralMethodWhereTheRateHoldsSprings) {
-  const Scene scene = taut_scene();
-  const ClothSystem system = make_cloth(scene);
-  ForceModel forces(scene, system), others(scene, system);
-  ASSERT_TRUE(FusedPredictedVerlet::suits(forces));
-  ASSERT_TRUE(DampingAt::suits(system, forces.swept()));
-  FusedPredictedVerlet fused;
-  Verlet general(EndVelocity::predicted);
-  LimitedRun a(scene, system, fused), b(scene, system, general);
-  const double h = 0.1 / guaranteed_frequency(scene);
-  for (int n = 0; n < 800; ++n) {
-    const StepTimes times{n * h, (n + 1) * h, h};
-    a.step(fused, forces, times);
-    b.step(general, others, times);
-  }
-  ASSERT_GT(a.few, 100) << a.held;
-  ASSERT_GT(a.held - a.few, 20);
-  EXPECT_EQ(a.held, b.held);
-  // Tensions are solved for to a tolerance.
-  EXPECT_LT(rms_distance(a.state.position, b.state.position), 1e-6);
-  EXPECT_NEAR(a.limiter_work, b.limiter_work, 1e-3 * std::abs(b.limiter_work));
-  EXPECT_NEAR(a.work.air, b.work.air, 1e-5 * std::abs(b.work.air));
-  EXPECT_NEAR(a.work.damping_loss, b.work.damping_loss, 1e-6 * b.work.damping_loss);
-}
-
-/// The balance of energy closes as well with the damping of single particles: its error falls with h^2.
-TEST(PredictedDamping, LeavesAnErrorInTheLedgerOfOrderTwoWhereTheRateHoldsSprings) {
-  Scene scene = builtin_scene("flag");
-  scene.duration = 0.5;
-  std::vector<double> errors;
-  for (const double h : {0.0002, 0.0001}) {
-    scene.integrator.time_step = h;
-    Simulation simulation(scene);
-    ASSERT_FALSE(simulation.advance(static_cast<std::int64_t>(std::lround(0.48 / h))));
-    ASSERT_LT(simulation.measure().ledger.limiter, -0.01);
-    errors.push_back(std::abs(simulation.measure().energy_error()));
-  }
-  EXPECT_LT(errors[1], errors[0] / 3);
-}
-
-TEST(DampingAt, IsWhatTheForcesOfAllParticlesAreLessWithAVelocityThanWithout) {
-  Random random;
-  Scene narrow = damped_scene();
-  narrow.cloth.rows = 7, narrow.cloth.columns = 2;
-  for (const Scene& scene : {damped_scene(), narrow, builtin_scene("flag"), builtin_scene("wind")}) {
-    const ClothSystem system = make_cloth(scene);
-    ForceModel forces(scene, system);
-    ASSERT_TRUE(DampingAt::suits(system, forces.swept())) << scene.title;
-    const ClothState state = crumpled_state(system, 0.01, 0.3, random);
-    Vec3Field moving(state.position.size()), resting = moving;
-    forces.update(state.position, 0.3);
-    forces.force(state.position, state.velocity, moving);
-    forces.force(state.position, Vec3Field(state.position.size()), resting);
-    const double largest = std::max(largest_distance(moving, resting), 1e-12);
-    const DampingAt damping(system, forces.swept());
-    SparseField change;
-    change.clear(state.position.size());
-    double expected = 0;
-    for (std::size_t i = 0; i < state.position.size(); ++i) {
-      const Vec3 product = damping.product(i, state.position, state.velocity);
-      ASSERT_LE((resting[i] - moving[i] - product).norm(), 1e-12 * largest) << scene.title << " " << i;
-      if (i % 7 == 0) change.add(i, random.vector(1)), expected -= product.dot(change[i]);
-    }
-    EXPECT_NEAR(damping.power(state.position, state.velocity, change), expected,
-                1e-12 * (largest * static_cast<double>(change.size())));
-  }
-}
-
-TEST(DampingAt, IsNotKnownOfMeshesMaterialsAndDampingTimes) {
-  for (const char* name : {"wind-denim", "disc"}) {
-    const Scene scene = builtin_scene(name);
-    const ClothSystem system = make_cloth(scene);
-    const ForceModel forces(scene, system);
-    EXPECT_FALSE(DampingAt::suits(system, forces.swept())) << name;
   }
 }
 
@@ -416,7 +302,7 @@ TEST(PredictedDamping, IsGivenUpWhileAHandPullsTooHardForIt) {
 
 /// (h^2 K + 4 h D)/(4 m) of random shapes and motions, by the forces' own differences.
 TEST(PredictedDampingLoad, IsAboveTheRayleighQuotientOfEveryShape) {
-  const Scene scene = damped_scene();
+  const Scene scene = damped_smooth_scene(6, 6);
   const double h = 0.01, bound = predicted_damping_load(scene, h);
   const ClothSystem system = make_cloth(scene);
   ForceModel forces(scene, system);

@@ -133,100 +133,137 @@ IntegratorReport FusedVerlet::step_many(ForceModel& forces, double step, std::sp
   return {.force_evaluations = 1, .speed_squares = speed_squares.back()};
 }
 
-Work FusedPredictedVerlet::power_of(const ForceModel& forces, const StepSums& sums) const {
+Work FusedDampedVerlet::power_of(const ForceModel& forces, const StepSums& sums) const {
   return {.damping_loss = forces.swept().damping * sums.before + sums.dampers, .air = sums.air};
 }
 
-/// The force at the state, which nothing has predicted.
-void FusedPredictedVerlet::begin_force(ForceModel& forces, double time, ClothState& state) {
+/// Unless it is held: the force at the state, at no other velocity.
+int FusedDampedVerlet::begin_force(ForceModel& forces, double time, ClothState& state) {
+  if (holds_force_) return 0;
   if (force_.size() != state.position.size()) force_ = Vec3Field(state.position.size());
   force_.fill(0);
-  power_ = power_of(forces, forces.sweep()->predicted_close(0, loads_at(forces, {&time, 1}), force_, state));
+  const SweepLoads loads = loads_at(forces, {&time, 1});
+  power_ = power_of(forces, forces.sweep()->predicted_close(0, DampedAt::prediction, loads, force_, state));
   holds_force_ = true;
+  return 1;
 }
 
-IntegratorReport FusedPredictedVerlet::step(ForceModel& forces, const StepTimes& times, ClothState& state,
-                                            Work& work) {
-  const bool knows_damping = constraint_ && DampingAt::suits(forces.system(), forces.swept());
-  if (constraint_ && constraint_->holds() && !(knows_damping && constraint_->holds_few()))
-    return Verlet::step(forces, times, state, work);
-  IntegratorReport report{.force_evaluations = 1};
-  if (!holds_force_) {
-    begin_force(forces, times.begin, state);
-    ++report.force_evaluations;
-  }
-  const double half = 0.5 * times.step;
+IntegratorReport FusedDampedVerlet::step(ForceModel& forces, const StepTimes& times, ClothState& state,
+                                         Work& work) {
+  if (constraint_) return constrained_step(forces, times, state, work);
+  IntegratorReport report{.force_evaluations = 1 + begin_force(forces, times.begin, state)};
   const SweepLoads loads = loads_at(forces, {&times.end, 1});
-  if (constraint_) open_constrained(forces, times, loads, state);
-  work += half * power_;
-  closing_correction_ = 0;
-  if (constraint_ && constraint_->opening_change()) {
-    if (!knows_damping || !DampingAt::is_worthwhile(*constraint_->opening_change())) {
-      if (forces.has_damping_loss()) work.damping_loss -= half * power_at_opening(forces, times, state);
-      report.force_evaluations += finish_predicted(forces, times, state, work) - 1;
-      return report;
-    }
-    if (forces.has_damping_loss()) work.damping_loss -= half * correct_few(forces, times.step, state);
-  }
-  const StepSums sums = constraint_ ? forces.sweep()->predicted_close(times.step, loads, force_, state)
-                                    : forces.sweep()->predicted(times.step, loads, force_, state);
-  power_ = power_of(forces, sums);
-  work += half * power_;
-  work.damping_loss += closing_correction_;
-  report.speed_squares = sums.after;
-  holds_position_force_ = false, holds_force_ = true;
+  work += 0.5 * times.step * power_;
+  StepSums sums = forces.sweep()->predicted(times.step, first_, loads, force_, state);
+  if (is_corrected())
+    sums = forces.sweep()->predicted_close(times.step, DampedAt::prediction, loads, force_, state);
+  finish(forces, 0.5 * times.step, sums, work, report);
   return report;
 }
 
-/// Up to where the positions are known, with the predicted velocity. Only a step that begins with tensions,
-/// which nearly always moves particles, keeps its beginning.
-void FusedPredictedVerlet::open_constrained(ForceModel& forces, const StepTimes& times,
-                                            const SweepLoads& loads, ClothState& state) {
+IntegratorReport FusedDampedVerlet::open_step(ForceModel& forces, const StepTimes& times, ClothState& state,
+                                              Work& work) {
+  IntegratorReport report{.force_evaluations = 1 + begin_force(forces, times.begin, state)};
+  work += 0.5 * times.step * power_;
+  forces.sweep()->predicted_open(times.step, first_, loads_at(forces, {}), force_, state);
+  holds_position_force_ = led_by_contact_ = false;
+  is_open_ = true;
+  return report;
+}
+
+void FusedDampedVerlet::close_step(ForceModel& forces, const StepTimes& times, ClothState& state, Work& work,
+                                   IntegratorReport& report) {
+  const SweepLoads loads = loads_at(forces, {&times.end, 1});
+  StepSums sums = forces.sweep()->predicted_close(times.step, first_, loads, force_, state);
+  if (is_corrected())
+    sums = forces.sweep()->predicted_close(times.step, DampedAt::prediction, loads, force_, state);
+  finish(forces, 0.5 * times.step, sums, work, report);
+}
+
+void FusedDampedVerlet::finish(const ForceModel& forces, double half_step, const StepSums& sums, Work& work,
+                               IntegratorReport& report) {
+  power_ = power_of(forces, sums);
+  work += half_step * power_;
+  report.speed_squares = sums.after;
+  holds_position_force_ = is_open_ = false, holds_force_ = true;
+}
+
+IntegratorReport FusedDampedVerlet::constrained_step(ForceModel& forces, const StepTimes& times,
+                                                     ClothState& state, Work& work) {
+  const bool knows_damping = DampingAt::suits(forces.system(), forces.swept());
+  if (constraint_->holds() && !(knows_damping && constraint_->holds_few())) {
+    IntegratorReport report = Verlet::open_step(forces, times, state, work);
+    Verlet::close_step(forces, times, state, work, report);
+    return report;
+  }
+  IntegratorReport report{.force_evaluations = 1 + begin_force(forces, times.begin, state)};
+  const double half = 0.5 * times.step;
+  const SweepLoads loads = loads_at(forces, {&times.end, 1});
+  open_constrained(forces, times, loads, state);
+  work += half * power_;
+  closing_correction_ = 0;
+  const SparseField* opening = constraint_->opening_change();
+  const bool corrects = opening && forces.has_damping_loss();
+  const bool is_few = !opening || (knows_damping && DampingAt::is_worthwhile(*opening));
+  if (corrects) work.damping_loss -= half * power_at_opening(forces, times, is_few, state);
+  if (!is_few) {
+    Verlet::close_step(forces, times, state, work, report);
+    return report;
+  }
+  SpringSweep& sweep = *forces.sweep();
+  if (is_corrected()) sweep.predicted_close(times.step, first_, loads, force_, state);
+  if (const SparseField* closing = constraint_->closing_change(); corrects && closing)
+    closing_correction_ =
+        half * DampingAt(forces.system(), forces.swept()).power(state.position, state.velocity, *closing);
+  finish(forces, half, sweep.predicted_close(times.step, DampedAt::prediction, loads, force_, state), work,
+         report);
+  work.damping_loss += closing_correction_;
+  return report;
+}
+
+/// Up to where the positions are known. Only a step that begins with tensions, which nearly always moves
+/// particles, keeps its beginning.
+void FusedDampedVerlet::open_constrained(ForceModel& forces, const StepTimes& times, const SweepLoads& loads,
+                                         ClothState& state) {
   keeps_before_ = constraint_->holds();
   if (keeps_before_) before_.position = state.position, before_.velocity = state.velocity;
   constraint_->before_kick(0.5 * times.step, times.step, state);
-  forces.sweep()->predicted_open(times.step, loads, force_, state);
+  forces.sweep()->predicted_open(times.step, first_, loads, force_, state);
   constraint_->after_drift(0.5 * times.step, state);
 }
 
-/// Where the constraint changes few particles: returns power_at_opening(), and finds the correction of the
-/// closing, at the predicted velocity.
-double FusedPredictedVerlet::correct_few(ForceModel& forces, double step, const ClothState& state) {
-  const DampingAt damping(forces.system(), forces.swept());
-  if (const SparseField* closing = constraint_->closing_change())
-    closing_correction_ = 0.5 * step * damping.power(state.position, state.velocity, *closing);
-  if (!keeps_before_) find_before(forces, step, state);
-  return damping.power(before_.position, before_.velocity, *constraint_->opening_change());
-}
-
 /// The power of -D v for the constraint's change in the opening of the step, with the velocity that the step
-/// began with instead of the one predicted for it: no pass keeps the damping apart from other forces, and in
-/// the ledger the difference is one of order 2.
-double FusedPredictedVerlet::power_at_opening(ForceModel& forces, const StepTimes& times,
-                                              const ClothState& state) {
+/// began with instead of the one at which its damping was evaluated: no pass keeps the damping apart from
+/// other forces, and in the ledger the difference is one of order 2.
+double FusedDampedVerlet::power_at_opening(ForceModel& forces, const StepTimes& times, bool is_few,
+                                           const ClothState& state) {
   if (!keeps_before_) find_before(forces, times.step, state);
+  const SparseField& change = *constraint_->opening_change();
+  if (is_few)
+    return DampingAt(forces.system(), forces.swept()).power(before_.position, before_.velocity, change);
   if (opening_force_.size() != state.position.size()) opening_force_ = Vec3Field(state.position.size());
   forces.update(before_.position, times.begin);
   forces.force(before_.position, before_.velocity, opening_force_);
-  return power_beside(forces.position_force(), opening_force_, *constraint_->opening_change());
+  return power_beside(forces.position_force(), opening_force_, change);
 }
 
 /// The state at the beginning of the step, to rounding, from the drifted one and what the constraint has
 /// changed of it.
-void FusedPredictedVerlet::find_before(const ForceModel& forces, double step, const ClothState& state) {
+void FusedDampedVerlet::find_before(const ForceModel& forces, double step, const ClothState& state) {
   const SparseField& change = *constraint_->opening_change();
   before_.position = state.position, before_.velocity = state.velocity;
   add_scaled(-1, change, before_.velocity);
   if (const SparseField* closing = constraint_->closing_change()) add_scaled(-1, *closing, before_.velocity);
-  add_acceleration(forces.system(), -0.5 * step, force_, before_.velocity);
+  if (!is_corrected()) add_acceleration(forces.system(), -0.5 * step, force_, before_.velocity);
   add_scaled(-step, change, before_.position);
   add_scaled(-step, before_.velocity, before_.position);
   add_acceleration(forces.system(), -0.5 * step, force_, before_.velocity);
 }
 
 /// The next step begins with this evaluation.
-Work FusedPredictedVerlet::correct_work(ForceModel& forces, const StepTimes& times, const ClothState& state) {
-  if (constraint_ && constraint_->closing_change()) return Verlet::correct_work(forces, times, state);
+Work FusedDampedVerlet::correct_work(ForceModel& forces, const StepTimes& times, const ClothState& state) {
+  if (is_open_ || led_by_contact_ || (constraint_ && constraint_->closing_change()))
+    return Verlet::correct_work(forces, times, state);
   Work correction = -0.5 * times.step * power_;
   forget(Change::state);
   begin_force(forces, times.end, const_cast<ClothState&>(state));  // with no step it is only read

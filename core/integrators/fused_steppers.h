@@ -86,28 +86,39 @@ class FusedVerlet : public Verlet {
   void evaluate(ForceModel& forces, const ClothState& state) override;
 };
 
-/// Verlet with every force at the predicted velocity (EndVelocity::predicted), dampers along springs and air
-/// in the pass. With a constraint the pass is divided where that acts; a step in which it moves particles is
-/// one of the general method where these are many or DampingAt does not know the damping.
-class FusedPredictedVerlet : public Verlet {
+/// Verlet with every force at a velocity that is not solved for (EndVelocity::predicted or corrected),
+/// dampers along springs and air in the pass: one pass, or two. With a constraint the first is divided where
+/// that acts; a step in which it moves particles is one of the general method where these are many or
+/// DampingAt does not know the damping.
+class FusedDampedVerlet : public Verlet {
  public:
-  FusedPredictedVerlet() : Verlet(EndVelocity::predicted) {}
+  explicit FusedDampedVerlet(EndVelocity end)
+      : Verlet(end), first_(end == EndVelocity::corrected ? DampedAt::half_step : DampedAt::prediction) {}
   static bool suits(const ForceModel& forces) {
     return forces.is_swept_whole() && forces.sweep()->takes_predicted();
   }
 
   IntegratorReport step(ForceModel& forces, const StepTimes& times, ClothState& state, Work& work) override;
+  IntegratorReport open_step(ForceModel& forces, const StepTimes& times, ClothState& state,
+                             Work& work) override;
+  void close_step(ForceModel& forces, const StepTimes& times, ClothState& state, Work& work,
+                  IntegratorReport& report) override;
   Work correct_work(ForceModel& forces, const StepTimes& times, const ClothState& state) override;
 
  private:
-  void begin_force(ForceModel& forces, double time, ClothState& state);
+  bool is_corrected() const { return first_ == DampedAt::half_step; }
+  int begin_force(ForceModel& forces, double time, ClothState& state);
   Work power_of(const ForceModel& forces, const StepSums& sums) const;
+  IntegratorReport constrained_step(ForceModel& forces, const StepTimes& times, ClothState& state,
+                                    Work& work);
   void open_constrained(ForceModel& forces, const StepTimes& times, const SweepLoads& loads,
                         ClothState& state);
-  double correct_few(ForceModel& forces, double step, const ClothState& state);
-  double power_at_opening(ForceModel& forces, const StepTimes& times, const ClothState& state);
+  void finish(const ForceModel& forces, double half_step, const StepSums& sums, Work& work,
+              IntegratorReport& report);
+  double power_at_opening(ForceModel& forces, const StepTimes& times, bool is_few, const ClothState& state);
   void find_before(const ForceModel& forces, double step, const ClothState& state);
 
+  const DampedAt first_;       ///< the velocity of a step's first evaluation
   ClothState before_;          ///< at the beginning of a step in which a constraint moves particles
   bool keeps_before_ = false;  ///< of the present step
 };

@@ -63,7 +63,7 @@ Stepper made_fused() {
 }
 
 Stepper made_unsolved_verlet(const StepperKind& kind) {
-  if (kind.fused) return std::make_unique<FusedPredictedVerlet>();
+  if (kind.fused) return std::make_unique<FusedDampedVerlet>(kind.end_velocity);
   return std::make_unique<Verlet>(kind.end_velocity);
 }
 
@@ -257,9 +257,9 @@ StepperKind stepper_kind(const std::string& method, const ForceModel& forces, co
   const Entry& entry = entry_of(method);
   StepperKind kind;
   if (entry.make_unsolved && needs.end_velocity != EndVelocity::solved) {
-    const bool sweeps = needs.end_velocity == EndVelocity::predicted && FusedPredictedVerlet::suits(forces);
-    if (forces.couples_particles() || (sweeps && forces.swept().air))
-      return {.fused = sweeps, .end_velocity = needs.end_velocity};
+    const bool sweeps = FusedDampedVerlet::suits(forces);
+    const bool gains = sweeps && needs.end_velocity == EndVelocity::predicted && forces.swept().air;
+    if (forces.couples_particles() || gains) return {.fused = sweeps, .end_velocity = needs.end_velocity};
   }
   kind.fused = entry.suits_fused && entry.suits_fused(forces, needs.constrained);
   return kind;

@@ -24,11 +24,13 @@ double power_beside(const Vec3Field& position_force, const Vec3Field& force, con
 }
 
 IntegratorReport Verlet::step(ForceModel& forces, const StepTimes& times, ClothState& state, Work& work) {
-  if (end_ == EndVelocity::predicted && forces.has_damping())
-    return predicted_step(forces, times, state, work);
   IntegratorReport report = open_step(forces, times, state, work);
   close_step(forces, times, state, work, report);
   return report;
+}
+
+bool Verlet::keeps_force(const ForceModel& forces) const {
+  return end_ != EndVelocity::solved && forces.has_damping();
 }
 
 /// A constraint ties the closing kick to the drift.
@@ -38,20 +40,21 @@ bool Verlet::waits_for_contact(const ForceModel& forces) const {
 
 IntegratorReport Verlet::open_step(ForceModel& forces, const StepTimes& times, ClothState& state,
                                    Work& work) {
-  IntegratorReport report;
+  IntegratorReport report{.force_evaluations = 1};  // of the closing
   const double h = times.step;
-  if (!holds_position_force_) {
+  const bool keeps = keeps_force(forces), corrects = constraint_ && forces.has_damping_loss();
+  if (!holds_position_force_ && (!keeps || corrects || !holds_force_))
     forces.update(state.position, times.begin);
-    ++report.force_evaluations;
-  }
+  if (keeps ? !holds_force_ : !holds_position_force_) ++report.force_evaluations;
   if (!holds_force_) evaluate(forces, state);
   work += 0.5 * h * power_;
   if (constraint_) constraint_->before_kick(0.5 * h, h, state);
   add_acceleration(forces.system(), 0.5 * h, force(forces), state.velocity);
   add_scaled(h, state.velocity, state.position);
+  if (keeps && end_ == EndVelocity::predicted)
+    add_acceleration(forces.system(), 0.5 * h, force_, state.velocity);
   if (constraint_) constraint_->after_drift(0.5 * h, state);
-  if (constraint_ && forces.has_damping_loss()) correct_opening(forces, 0.5 * h, work);
-  ++report.force_evaluations;  // of the closing
+  if (corrects) correct_opening(forces, 0.5 * h, work);
   holds_position_force_ = led_by_contact_ = false;
   is_open_ = true;
   return report;
@@ -61,51 +64,33 @@ void Verlet::close_step(ForceModel& forces, const StepTimes& times, ClothState& 
                         IntegratorReport& report) {
   const double h = times.step;
   forces.update(state.position, times.end);
-  if (end_ == EndVelocity::corrected && forces.has_damping())
-    finish_corrected(forces, 0.5 * h, state);
-  else
+  if (keeps_force(forces)) {
+    finish_unsolved(forces, 0.5 * h, state);
+  } else {
     report.velocity_iterations = finish_velocity(forces, 0.5 * h, solved_tolerance, state);
-  evaluate(forces, state);
+    evaluate(forces, state);
+  }
   work += 0.5 * h * power_;
   work.damping_loss += closing_correction_ = closing_correction(forces, h);
   holds_position_force_ = true;
   is_open_ = false;
 }
 
-IntegratorReport Verlet::predicted_step(ForceModel& forces, const StepTimes& times, ClothState& state,
-                                        Work& work) {
-  IntegratorReport report;
-  const double half = 0.5 * times.step;
-  const bool corrects = constraint_ && forces.has_damping_loss();
-  if (!holds_position_force_ && (corrects || !holds_force_)) forces.update(state.position, times.begin);
-  if (!holds_force_) {
-    evaluate(forces, state);
-    ++report.force_evaluations;
+/// From the velocity that the force of the beginning predicts, or from that at half the step, whose force
+/// predicts one.
+void Verlet::finish_unsolved(ForceModel& forces, double half_step, ClothState& state) {
+  if (end_ == EndVelocity::corrected) {
+    forces.force(state.position, state.velocity, force_);
+    add_acceleration(forces.system(), half_step, force_, state.velocity);
   }
-  work += half * power_;
-  if (constraint_) constraint_->before_kick(half, times.step, state);
-  add_acceleration(forces.system(), half, force_, state.velocity);
-  add_scaled(times.step, state.velocity, state.position);
-  add_acceleration(forces.system(), half, force_, state.velocity);
-  if (constraint_) constraint_->after_drift(half, state);
-  if (corrects) correct_opening(forces, half, work);
-  report.force_evaluations += finish_predicted(forces, times, state, work);
-  return report;
-}
-
-int Verlet::finish_predicted(ForceModel& forces, const StepTimes& times, ClothState& state, Work& work) {
-  const double half = 0.5 * times.step;
-  opening_force_ = force_;
-  forces.update(state.position, times.end);
+  Vec3Field& change = opening_force_;
+  change = force_;
   power_ = forces.force_and_power(state.position, state.velocity, force_);
-  const auto from = opening_force_.flat();
+  const auto from = change.flat();
   const std::span<const double> to = force_.flat();
   for (std::size_t k = 0; k < from.size(); ++k) from[k] = to[k] - from[k];
-  add_acceleration(forces.system(), half, opening_force_, state.velocity);
-  work += half * power_;
-  work.damping_loss += closing_correction_ = closing_correction(forces, times.step);
-  holds_position_force_ = holds_force_ = true;
-  return 1;
+  add_acceleration(forces.system(), half_step, change, state.velocity);
+  holds_force_ = true;
 }
 
 /// The damping is still that of the opening kick.
@@ -135,7 +120,7 @@ const Vec3Field& Verlet::force(const ForceModel& forces) const {
   return forces.has_damping() ? force_ : forces.position_force();
 }
 
-/// From the velocity at half the step; `force_` is the guess, or corrects once. Returns the iterations.
+/// From the velocity at half the step. `force_` is the guess, or is taken as it is. Returns the iterations.
 int Verlet::finish_velocity(ForceModel& forces, double half_step, double tolerance, ClothState& state) {
   holds_force_ = false;
   if (forces.has_damping() && end_ == EndVelocity::predicted) {
@@ -150,17 +135,6 @@ int Verlet::finish_velocity(ForceModel& forces, double half_step, double toleran
     return solver_.solve(forces, half_step, tolerance, state.position, state.velocity, force_);
   add_acceleration(forces.system(), half_step, force(forces), state.velocity);
   return 0;
-}
-
-/// From the velocity at half the step.
-void Verlet::finish_corrected(ForceModel& forces, double half_step, ClothState& state) {
-  half_velocity_ = state.velocity;
-  for (int evaluation = 0; evaluation < 2; ++evaluation) {
-    forces.force(state.position, state.velocity, force_);
-    state.velocity = half_velocity_;
-    add_acceleration(forces.system(), half_step, force_, state.velocity);
-  }
-  holds_force_ = false;
 }
 
 /// Without it the cloth beside a contact would feel springs at positions that contact has undone, and at rest
@@ -186,9 +160,9 @@ void Verlet::update_velocity_for_damping(ForceModel& forces, const StepTimes& ti
   add_acceleration(forces.system(), 0.5 * times.step, force(forces), state.velocity);
 }
 
-/// Of a predicted velocity, whose damping stays as it is.
+/// Its damping stays as it is.
 Vec3Field* Verlet::held_force() {
-  if (end_ == EndVelocity::predicted && holds_force_) {
+  if (end_ != EndVelocity::solved && holds_force_) {
     holds_position_force_ = false;
     return &force_;
   }
@@ -197,7 +171,7 @@ Vec3Field* Verlet::held_force() {
 }
 
 IntegratorMemory Verlet::remember() const {
-  if (end_ != EndVelocity::predicted || !holds_force_) return {};
+  if (end_ == EndVelocity::solved || !holds_force_) return {};
   return {.fields = {force_},
           .numbers = {power_.damping_loss, power_.hysteresis_loss, power_.air, power_.brush, power_.pull,
                       closing_correction_}};
@@ -205,7 +179,7 @@ IntegratorMemory Verlet::remember() const {
 
 void Verlet::recall(const IntegratorMemory& memory) {
   forget(Change::state);
-  if (end_ != EndVelocity::predicted || memory.fields.empty()) return;
+  if (end_ == EndVelocity::solved || memory.fields.empty()) return;
   force_ = memory.fields[0];
   const std::vector<double>& n = memory.numbers;
   power_ = {n[0], n[1], n[2], n[3], n[4]};

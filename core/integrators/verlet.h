@@ -12,12 +12,15 @@
 //            known = v_half and weight = h/2): closed where no damping couples particles, else by conjugate
 //            gradients. Stable for omega h < 2 at every damping ratio.
 // corrected: a' = a(x', v1, t+h) with v1 = v_half + h/2 a(x', v_half, t+h): two evaluations from the velocity
-//            at half the step. v' is wrong by O(h^3) a step: order 2. On x'' = -omega^2 x - c x', w = omega
-//            h, g = c h, p = 1 - g/2, q = p + g^2/4, a step has the determinant p q and the trace 1 + p q -
-//            (1 + p^2) w^2/2; by Jury's test it is stable where w^2 (1 + p^2) < 4 (1 + p q), which for g <= 2
-//            is so at every w < 2. Where K and D have no common eigenvectors that is no proof: random pairs
-//            of matrices with w < 2 and g <= 1.2 were searched for growth, and had none. Taken where h D <= m
-//            (damping_load() of measure/stability_limit.h).
+//            at half the step; the next step begins with a'. v1 is wrong by O(h^2), v' by O(h^3) a step:
+//            order 2. For m x'' = -K x - D x' with any K and D, in units where m = 1 and h = 1, and G = D,
+//            the velocity u at half a step becomes u' = u - (1 - G/2) (K x' + G u), so that
+//                N (u' - u) = -K x' - G (u + u')/2,   N = (1 - G/2)^-1 - G/2.
+//            Times u + u', the energy u N u + x' K x (x' = x + u) changes by - (u + u') G (u + u')/2: it
+//            never grows. It bounds the motion where K < 4 N, and N = 1 + G^2/(4 - 2 G) >= 1 for G < 2: a
+//            step with h D < 2 m is stable wherever an undamped one is, whether K and D have common
+//            eigenvectors or not. Taken where h D <= m (damping_load() of measure/stability_limit.h), since
+//            the fastest damping is weaker than it should be by g^3/6 of e^-g a step, g = h D/m.
 // predicted: a' = a(x', v + h a, t+h), at the velocity that the step predicts, and the next step begins with
 //            that a'. No equation is solved. The prediction is wrong by O(h^2), v' by O(h^3) a step: order 2
 //            (Groot and Warren 1997, with lambda = 1). On x'' = -omega^2 x - c x' the eigenvalues of a step
@@ -66,7 +69,8 @@ class Verlet : public Integrator {
   Work correct_work(ForceModel& forces, const StepTimes& times, const ClothState& state) override;
   void forget(Change) override { holds_position_force_ = holds_force_ = is_open_ = led_by_contact_ = false; }
   Vec3Field* held_force() override;
-  /// A predicted velocity is not part of the state: what was computed with it is remembered.
+  /// The velocity at which damping was evaluated is not that of the state: what was computed with it is
+  /// remembered.
   IntegratorMemory remember() const override;
   void recall(const IntegratorMemory& memory) override;
 
@@ -74,17 +78,17 @@ class Verlet : public Integrator {
   /// Computes the power and, where forces depend on the velocity, the force p - D v. The positions are those
   /// of the last ForceModel::update.
   virtual void evaluate(ForceModel& forces, const ClothState& state);
-  /// Of a step with predicted velocity: `state` after the drift holds the prediction. Returns force
-  /// evaluations.
-  int finish_predicted(ForceModel& forces, const StepTimes& times, ClothState& state, Work& work);
+  /// Whether the next step begins with the force of the last evaluation: damping is not solved for.
+  bool keeps_force(const ForceModel& forces) const;
   /// Takes from `work` what the damping that is known did at the opening, as far as the constraint had
   /// changed the velocity.
   void correct_opening(const ForceModel& forces, double half_step, Work& work) const;
 
+  const EndVelocity end_;
   DriftConstraint* constraint_ = nullptr;
   Work power_;                         ///< at the end of the last step
   Vec3Field force_;                    ///< p - D v, N; used only where has_damping()
-  Vec3Field opening_force_;            ///< N, of a step with predicted velocity
+  Vec3Field opening_force_;            ///< N, scratch
   double closing_correction_ = 0;      ///< J, of the constraint's part of the damping loss, last step
   bool holds_position_force_ = false;  ///< the force model was last updated at the state
   bool is_open_ = false;               ///< open_step() was the last call
@@ -92,14 +96,11 @@ class Verlet : public Integrator {
   bool holds_force_ = false;     ///< `force_` and `power_` are those with which the next step begins
 
  private:
-  IntegratorReport predicted_step(ForceModel& forces, const StepTimes& times, ClothState& state, Work& work);
   double closing_correction(const ForceModel& forces, double step);
   const Vec3Field& force(const ForceModel& forces) const;
   int finish_velocity(ForceModel& forces, double half_step, double tolerance, ClothState& state);
-  void finish_corrected(ForceModel& forces, double half_step, ClothState& state);
+  void finish_unsolved(ForceModel& forces, double half_step, ClothState& state);
 
-  EndVelocity end_;
-  Vec3Field half_velocity_;  ///< m/s, of a step with corrected velocity
   VelocitySolver solver_;
 };
 

@@ -29,9 +29,11 @@ class GridSweep : public SpringSweep {
   double verlet(double step, const SweepLoads& loads, Vec3Field& force, ClothState& state) override;
   void verlet_steps(double step, const SweepLoads& loads, std::span<double> squares, Vec3Field& force,
                     ClothState& state) override;
-  StepSums predicted(double step, const SweepLoads& loads, Vec3Field& force, ClothState& state) override;
-  void predicted_open(double step, const SweepLoads& loads, Vec3Field& force, ClothState& state) override;
-  StepSums predicted_close(double step, const SweepLoads& loads, Vec3Field& force,
+  StepSums predicted(double step, DampedAt at, const SweepLoads& loads, Vec3Field& force,
+                     ClothState& state) override;
+  void predicted_open(double step, DampedAt at, const SweepLoads& loads, Vec3Field& force,
+                      ClothState& state) override;
+  StepSums predicted_close(double step, DampedAt at, const SweepLoads& loads, Vec3Field& force,
                            ClothState& state) override;
   bool takes_predicted() const override { return true; }
   void runge_kutta(double step, const SweepLoads& loads, std::span<StageSums> sums,
@@ -68,6 +70,7 @@ class GridSweep : public SpringSweep {
     const SweepLoads& loads;
     double step = 0;  ///< s
     bool drift_first = false;
+    DampedAt damped_at = DampedAt::prediction;
     std::array<Attached, 3> fields{};  ///< entries without `values` are unused
     int sums = kernels::step_sums;
     int scratch_rows = kernels::step_scratch_rows;

@@ -114,25 +114,27 @@ struct VerletBetweenUpdate {
   }
 };
 
-/// v += h/2 f/m, x += h v, v += h/2 f/m for a row: the drift of velocity Verlet, and in `v` the velocity that
-/// the force f predicts at its end.
+/// v += h/2 f/m, x += h v, v += ahead f/m for a row: the drift of velocity Verlet, and in `v` the velocity
+/// that the force f predicts at its end (ahead = h/2), or that of the drift (0).
 template <bool Edge>
 CLOTHLAB_INLINE void drift_predict_block(const Row& x, const Row& v, const ConstRow& f,
-                                         const double* inverse_mass, V half_step, V step, int j, int count) {
-  const V scale = Lanes::mul(
-      half_step, Edge ? Lanes::load(inverse_mass + j, count, Lanes::zero()) : Lanes::load(inverse_mass + j));
+                                         const double* inverse_mass, V half_step, V step, V ahead, int j,
+                                         int count) {
+  const V inverse =
+      Edge ? Lanes::load(inverse_mass + j, count, Lanes::zero()) : Lanes::load(inverse_mass + j);
   const Vector force = load_part<Edge>(f, j, count);
-  const Vector half = plus(load_part<Edge>(v, j, count), scale, force);
+  const Vector half = plus(load_part<Edge>(v, j, count), Lanes::mul(half_step, inverse), force);
   store<Edge>(x, j, count, plus(load_part<Edge>(x, j, count), step, half));
-  store<Edge>(v, j, count, plus(half, scale, force));
+  store<Edge>(v, j, count, plus(half, Lanes::mul(ahead, inverse), force));
 }
 
-/// The closing kick after drift_predict_block: f' = p(x') - c v, with dampers and air in p, at the predicted
-/// velocity v; v' = v + h/2 (f' - f)/m. With half_step = 0 the velocity stays as it is.
+/// The closing kick after drift_predict_block: f' = p(x') - c v, with dampers and air in p, at the velocity v
+/// that it left; v' = v + h/2 (f' - held f)/m, where v holds the kick of `held` times f (1 or 0). With
+/// half_step = 0 the velocity stays as it is.
 template <Share share>
 struct PredictedUpdate {
   RowShares<share> shares{};
-  V half_step, damping;
+  V half_step, held, damping;
   Row velocity, force;
   const double* inverse_mass;
   V before, after;  ///< |v|^2 and |v'|^2
@@ -143,7 +145,7 @@ struct PredictedUpdate {
                                                : Lanes::load(inverse_mass + j));
     const Vector v = load_part<Edge>(velocity, j, count);
     const Vector total = minus(p, shares.of(damping, j), v);
-    const Vector next = plus(v, scale, total - load_part<Edge>(force, j, count));
+    const Vector next = plus(v, scale, minus(total, held, load_part<Edge>(force, j, count)));
     before = shares.plus_square(before, v, j);
     after = shares.plus_square(after, next, j);
     store<Edge>(velocity, j, count, next);

@@ -49,14 +49,14 @@ struct LimitedRun {
   }
 };
 
-TEST(RateInThePass, IsTheSameInThePassAndInTheGeneralMethodWhereTheRateHoldsSprings) {
+void expect_same_in_the_pass(EndVelocity end) {
   const Scene scene = taut_scene();
   const ClothSystem system = make_cloth(scene);
   ForceModel forces(scene, system), others(scene, system);
-  ASSERT_TRUE(FusedPredictedVerlet::suits(forces));
+  ASSERT_TRUE(FusedDampedVerlet::suits(forces));
   ASSERT_TRUE(DampingAt::suits(system, forces.swept()));
-  FusedPredictedVerlet fused;
-  Verlet general(EndVelocity::predicted);
+  FusedDampedVerlet fused(end);
+  Verlet general(end);
   LimitedRun a(scene, system, fused), b(scene, system, general);
   const double h = 0.1 / guaranteed_frequency(scene);
   for (int n = 0; n < 800; ++n) {
@@ -72,6 +72,13 @@ TEST(RateInThePass, IsTheSameInThePassAndInTheGeneralMethodWhereTheRateHoldsSpri
   EXPECT_NEAR(a.limiter_work, b.limiter_work, 1e-3 * std::abs(b.limiter_work));
   EXPECT_NEAR(a.work.air, b.work.air, 1e-5 * std::abs(b.work.air));
   EXPECT_NEAR(a.work.damping_loss, b.work.damping_loss, 1e-6 * b.work.damping_loss);
+}
+
+TEST(RateInThePass, IsTheSameInThePassAndInTheGeneralMethodWhereTheRateHoldsSprings) {
+  for (const EndVelocity end : {EndVelocity::predicted, EndVelocity::corrected}) {
+    SCOPED_TRACE(end == EndVelocity::corrected ? "corrected" : "predicted");
+    expect_same_in_the_pass(end);
+  }
 }
 
 /// The balance of energy closes as well with the damping of single particles: its error falls with h^2.

@@ -218,8 +218,8 @@ std::optional<Divergence> Simulation::step() {
   if (has_continuous_contact() && stop_test_) {
     ledger_before_ = run_.ledger;
     if (limiter_) tension_before_ = limiter_->tension();
-    if (inner_contact_)
-      before_inner_steps_ = {contact_->poses(), run_.contact_memory, integrator_->remember()};
+    memory_before_ = integrator_->remember();
+    if (inner_contact_) before_inner_steps_ = {contact_->poses(), run_.contact_memory};
   }
   Work& work = run_.ledger.forces;
   const bool waits = has_continuous_contact() && !limiter_ && integrator_->waits_for_contact(*forces_);
@@ -266,11 +266,10 @@ void Simulation::take_back_step() {
   run_.ledger = ledger_before_;
   if (limiter_) limiter_->set_tension(tension_before_);
   run_.last_contact = {};
-  integrator_->forget(Change::state);
+  integrator_->recall(memory_before_);
   if (inner_contact_) {
     contact_->restore(before_inner_steps_.poses, run_.transitions, run_.thickness_transition);
     run_.contact_memory = before_inner_steps_.contact;
-    integrator_->recall(before_inner_steps_.integrator);
   }
   interrupted_ = true;
 }

@@ -246,9 +246,9 @@ class Simulation {
   struct BeforeInnerSteps {
     std::vector<Pose> poses;
     ContactMemory contact;
-    IntegratorMemory integrator;
   } before_inner_steps_;                ///< at the begin of a step that may be taken back
-  std::vector<double> tension_before_;  ///< N, at the begin of a step that may be taken back
+  std::vector<double> tension_before_;  ///< N, likewise
+  IntegratorMemory memory_before_;      ///< likewise
   std::optional<UnreachableRate> unreachable_;
   PullStrength strongest_pull_, pull_strength_;
   std::optional<PullStrength> max_pull_;

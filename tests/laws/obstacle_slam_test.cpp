@@ -100,5 +100,31 @@ TEST(AStepOfContact, EndsWhenItIsAskedToAndLeavesTheStateBeforeIt) {
   EXPECT_EQ(all_crossings(simulation).number, 0);
 }
 
+TEST(AStepOfContact, ThatWasInterruptedIsTakenAgainToTheBit) {
+  const auto go = [](const Scene& scene, bool interrupts) {
+    Simulation simulation(scene);
+    int asked = 0, interruptions = 0;
+    simulation.set_stop_test([&] { return interrupts && ++asked == 5; });
+    while (simulation.state().step < 6) {
+      EXPECT_FALSE(simulation.step());
+      if (!simulation.interrupted()) continue;
+      ++interruptions;
+      EXPECT_GT(simulation.state().step, 1);
+    }
+    EXPECT_EQ(interruptions, interrupts ? 1 : 0);
+    return simulation.checkpoint();
+  };
+  for (const char* method : {"verlet", "implicit-euler", "bdf2", "dormand-prince", "xpbd", "vbd"})
+    for (const double damping : {1e-4, 3e-3}) {
+      Scene scene = hung_before(&box_shape(), {0, 0, -0.5}, {0, 0, 2.2});
+      scene.integrator.method = method;
+      scene.springs->damping = damping;
+      const Checkpoint straight = go(scene, false), interrupted = go(scene, true);
+      EXPECT_EQ(straight.state, interrupted.state) << method << " " << damping;
+      EXPECT_EQ(straight.ledger.forces.damping_loss, interrupted.ledger.forces.damping_loss)
+          << method << " " << damping;
+    }
+}
+
 }  // namespace
 }  // namespace cloth::test::obstacle_slam_test

@@ -157,7 +157,7 @@ IntegratorReport FusedDampedVerlet::step(ForceModel& forces, const StepTimes& ti
   StepSums sums = forces.sweep()->predicted(times.step, first_, loads, force_, state);
   if (is_corrected())
     sums = forces.sweep()->predicted_close(times.step, DampedAt::prediction, loads, force_, state);
-  finish(forces, 0.5 * times.step, sums, work, report);
+  finish(forces, times, sums, state, work, report);
   return report;
 }
 
@@ -177,15 +177,17 @@ void FusedDampedVerlet::close_step(ForceModel& forces, const StepTimes& times, C
   StepSums sums = forces.sweep()->predicted_close(times.step, first_, loads, force_, state);
   if (is_corrected())
     sums = forces.sweep()->predicted_close(times.step, DampedAt::prediction, loads, force_, state);
-  finish(forces, 0.5 * times.step, sums, work, report);
+  finish(forces, times, sums, state, work, report);
 }
 
-void FusedDampedVerlet::finish(const ForceModel& forces, double half_step, const StepSums& sums, Work& work,
-                               IntegratorReport& report) {
+void FusedDampedVerlet::finish(ForceModel& forces, const StepTimes& times, const StepSums& sums,
+                               ClothState& state, Work& work, IntegratorReport& report) {
   power_ = power_of(forces, sums);
-  work += half_step * power_;
+  holds_force_ = end_ != EndVelocity::renewed;
+  begin_force(forces, times.end, state);
+  work += 0.5 * times.step * power_;
   report.speed_squares = sums.after;
-  holds_position_force_ = is_open_ = false, holds_force_ = true;
+  holds_position_force_ = is_open_ = false;
 }
 
 IntegratorReport FusedDampedVerlet::constrained_step(ForceModel& forces, const StepTimes& times,
@@ -212,11 +214,15 @@ IntegratorReport FusedDampedVerlet::constrained_step(ForceModel& forces, const S
   }
   SpringSweep& sweep = *forces.sweep();
   if (is_corrected()) sweep.predicted_close(times.step, first_, loads, force_, state);
-  if (const SparseField* closing = constraint_->closing_change(); corrects && closing)
-    closing_correction_ =
-        half * DampingAt(forces.system(), forces.swept()).power(state.position, state.velocity, *closing);
-  finish(forces, half, sweep.predicted_close(times.step, DampedAt::prediction, loads, force_, state), work,
-         report);
+  const auto correct_closing = [&] {
+    if (const SparseField* closing = constraint_->closing_change(); corrects && closing)
+      closing_correction_ =
+          half * DampingAt(forces.system(), forces.swept()).power(state.position, state.velocity, *closing);
+  };
+  if (end_ != EndVelocity::renewed) correct_closing();
+  const StepSums sums = sweep.predicted_close(times.step, DampedAt::prediction, loads, force_, state);
+  if (end_ == EndVelocity::renewed) correct_closing();
+  finish(forces, times, sums, state, work, report);
   work.damping_loss += closing_correction_;
   return report;
 }

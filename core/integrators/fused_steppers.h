@@ -86,14 +86,14 @@ class FusedVerlet : public Verlet {
   void evaluate(ForceModel& forces, const ClothState& state) override;
 };
 
-/// Verlet with every force at a velocity that is not solved for (EndVelocity::predicted or corrected),
-/// dampers along springs and air in the pass: one pass, or two. With a constraint the first is divided where
-/// that acts; a step in which it moves particles is one of the general method where these are many or
-/// DampingAt does not know the damping.
+/// Verlet with every force at a velocity that is not solved for (EndVelocity::predicted, corrected or
+/// renewed), dampers along springs and air in the pass: one pass, two or three. With a constraint the first
+/// is divided where that acts; a step in which it moves particles is one of the general method where these
+/// are many or DampingAt does not know the damping.
 class FusedDampedVerlet : public Verlet {
  public:
   explicit FusedDampedVerlet(EndVelocity end)
-      : Verlet(end), first_(end == EndVelocity::corrected ? DampedAt::half_step : DampedAt::prediction) {}
+      : Verlet(end), first_(end == EndVelocity::predicted ? DampedAt::prediction : DampedAt::half_step) {}
   static bool suits(const ForceModel& forces) {
     return forces.is_swept_whole() && forces.sweep()->takes_predicted();
   }
@@ -113,7 +113,7 @@ class FusedDampedVerlet : public Verlet {
                                     Work& work);
   void open_constrained(ForceModel& forces, const StepTimes& times, const SweepLoads& loads,
                         ClothState& state);
-  void finish(const ForceModel& forces, double half_step, const StepSums& sums, Work& work,
+  void finish(ForceModel& forces, const StepTimes& times, const StepSums& sums, ClothState& state, Work& work,
               IntegratorReport& report);
   double power_at_opening(ForceModel& forces, const StepTimes& times, bool is_few, const ClothState& state);
   void find_before(const ForceModel& forces, double step, const ClothState& state);

@@ -64,12 +64,11 @@ void Verlet::close_step(ForceModel& forces, const StepTimes& times, ClothState& 
                         IntegratorReport& report) {
   const double h = times.step;
   forces.update(state.position, times.end);
-  if (keeps_force(forces)) {
+  if (keeps_force(forces))
     finish_unsolved(forces, 0.5 * h, state);
-  } else {
+  else
     report.velocity_iterations = finish_velocity(forces, 0.5 * h, solved_tolerance, state);
-    evaluate(forces, state);
-  }
+  if (!holds_force_) evaluate(forces, state);
   work += 0.5 * h * power_;
   work.damping_loss += closing_correction_ = closing_correction(forces, h);
   holds_position_force_ = true;
@@ -79,7 +78,7 @@ void Verlet::close_step(ForceModel& forces, const StepTimes& times, ClothState& 
 /// From the velocity that the force of the beginning predicts, or from that at half the step, whose force
 /// predicts one.
 void Verlet::finish_unsolved(ForceModel& forces, double half_step, ClothState& state) {
-  if (end_ == EndVelocity::corrected) {
+  if (end_ != EndVelocity::predicted) {
     forces.force(state.position, state.velocity, force_);
     add_acceleration(forces.system(), half_step, force_, state.velocity);
   }
@@ -90,7 +89,7 @@ void Verlet::finish_unsolved(ForceModel& forces, double half_step, ClothState& s
   const std::span<const double> to = force_.flat();
   for (std::size_t k = 0; k < from.size(); ++k) from[k] = to[k] - from[k];
   add_acceleration(forces.system(), half_step, change, state.velocity);
-  holds_force_ = true;
+  holds_force_ = end_ != EndVelocity::renewed;
 }
 
 /// The damping is still that of the opening kick.

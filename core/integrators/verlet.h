@@ -6,21 +6,24 @@
 //     v'     = v_half + h/2 a'
 //
 // The accelerations hold every force of the scene, a(x, v, t) = (p - D v) / m (forces/force.h), wind as part
-// of p. Three ways to take D v, of air drag as of viscous and spring damping (EndVelocity):
+// of p. Four ways to take D v, of air drag as of viscous and spring damping (EndVelocity):
 //
 // solved:    a = a(x, v, t), a' = a(x', v', t+h). The last line is solved for v' (VelocitySolver, with
 //            known = v_half and weight = h/2): closed where no damping couples particles, else by conjugate
 //            gradients. Stable for omega h < 2 at every damping ratio.
 // corrected: a' = a(x', v1, t+h) with v1 = v_half + h/2 a(x', v_half, t+h): two evaluations from the velocity
 //            at half the step; the next step begins with a'. v1 is wrong by O(h^2), v' by O(h^3) a step:
-//            order 2. For m x'' = -K x - D x' with any K and D, in units where m = 1 and h = 1, and G = D,
-//            the velocity u at half a step becomes u' = u - (1 - G/2) (K x' + G u), so that
-//                N (u' - u) = -K x' - G (u + u')/2,   N = (1 - G/2)^-1 - G/2.
-//            Times u + u', the energy u N u + x' K x (x' = x + u) changes by - (u + u') G (u + u')/2: it
-//            never grows. It bounds the motion where K < 4 N, and N = 1 + G^2/(4 - 2 G) >= 1 for G < 2: a
-//            step with h D < 2 m is stable wherever an undamped one is, whether K and D have common
-//            eigenvectors or not. Taken where h D <= m (damping_load() of measure/stability_limit.h), since
-//            the fastest damping is weaker than it should be by g^3/6 of e^-g a step, g = h D/m.
+//            order 2. For m x'' = -K x - D x' with any K and D, in units where m = 1 and h = 1, the velocity
+//            u at half a step becomes u', with
+//                N (u' - u) = -K x' - C (u + u')/2,   C = D,   N = 1 + D^2/(4 - 2 D).
+//            Times u + u', the energy u N u + x' K x (x' = x + u) changes by - (u + u') C (u + u')/2: it
+//            never grows. It bounds the motion where K < 4 N, and N >= 1 for D < 2: a step with h D < 2 m is
+//            stable wherever an undamped one is, whether K and D have common eigenvectors or not. Taken where
+//            h D <= m (damping_load() of measure/stability_limit.h): of a motion without stiffness 1 - g +
+//            g^2/2 is left for e^-g, g = h D/m, which is least there.
+// renewed:   likewise, but the next step begins with a(x', v', t+h), a third evaluation. With P = 1 - D/2 and
+//            Q = P + D^2/4 the same holds with N = (1 + P Q)/(1 + P^2) and C = 2 (1 - P Q)/(1 + P^2), and P Q
+//            is left for e^-g: it falls as far as D < 2. Taken where h D <= 1.95 m.
 // predicted: a' = a(x', v + h a, t+h), at the velocity that the step predicts, and the next step begins with
 //            that a'. No equation is solved. The prediction is wrong by O(h^2), v' by O(h^3) a step: order 2
 //            (Groot and Warren 1997, with lambda = 1). On x'' = -omega^2 x - c x' the eigenvalues of a step

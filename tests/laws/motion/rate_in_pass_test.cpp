@@ -75,8 +75,8 @@ void expect_same_in_the_pass(EndVelocity end) {
 }
 
 TEST(RateInThePass, IsTheSameInThePassAndInTheGeneralMethodWhereTheRateHoldsSprings) {
-  for (const EndVelocity end : {EndVelocity::predicted, EndVelocity::corrected}) {
-    SCOPED_TRACE(end == EndVelocity::corrected ? "corrected" : "predicted");
+  for (const EndVelocity end : {EndVelocity::predicted, EndVelocity::corrected, EndVelocity::renewed}) {
+    SCOPED_TRACE(static_cast<int>(end));
     expect_same_in_the_pass(end);
   }
 }

@@ -143,7 +143,7 @@ int FusedDampedVerlet::begin_force(ForceModel& forces, double time, ClothState& 
   if (force_.size() != state.position.size()) force_ = Vec3Field(state.position.size());
   force_.fill(0);
   const SweepLoads loads = loads_at(forces, {&time, 1});
-  power_ = power_of(forces, forces.sweep()->predicted_close(0, DampedAt::prediction, loads, force_, state));
+  power_ = power_of(forces, forces.sweep()->predicted_close(0, {}, loads, force_, state));
   holds_force_ = true;
   return 1;
 }
@@ -154,10 +154,10 @@ IntegratorReport FusedDampedVerlet::step(ForceModel& forces, const StepTimes& ti
   IntegratorReport report{.force_evaluations = 1 + begin_force(forces, times.begin, state)};
   const SweepLoads loads = loads_at(forces, {&times.end, 1});
   work += 0.5 * times.step * power_;
-  StepSums sums = forces.sweep()->predicted(times.step, first_, loads, force_, state);
-  if (is_corrected())
-    sums = forces.sweep()->predicted_close(times.step, DampedAt::prediction, loads, force_, state);
-  finish(forces, times, sums, state, work, report);
+  StepSums sums = forces.sweep()->predicted(times.step, evaluations_[0], loads, force_, state);
+  for (const VelocityUpdate& update : evaluations_.subspan(1))
+    sums = forces.sweep()->predicted_close(times.step, update, loads, force_, state);
+  finish(forces, 0.5 * times.step, sums, work, report);
   return report;
 }
 
@@ -165,7 +165,7 @@ IntegratorReport FusedDampedVerlet::open_step(ForceModel& forces, const StepTime
                                               Work& work) {
   IntegratorReport report{.force_evaluations = 1 + begin_force(forces, times.begin, state)};
   work += 0.5 * times.step * power_;
-  forces.sweep()->predicted_open(times.step, first_, loads_at(forces, {}), force_, state);
+  forces.sweep()->predicted_open(times.step, evaluations_[0], loads_at(forces, {}), force_, state);
   holds_position_force_ = led_by_contact_ = false;
   is_open_ = true;
   return report;
@@ -174,20 +174,18 @@ IntegratorReport FusedDampedVerlet::open_step(ForceModel& forces, const StepTime
 void FusedDampedVerlet::close_step(ForceModel& forces, const StepTimes& times, ClothState& state, Work& work,
                                    IntegratorReport& report) {
   const SweepLoads loads = loads_at(forces, {&times.end, 1});
-  StepSums sums = forces.sweep()->predicted_close(times.step, first_, loads, force_, state);
-  if (is_corrected())
-    sums = forces.sweep()->predicted_close(times.step, DampedAt::prediction, loads, force_, state);
-  finish(forces, times, sums, state, work, report);
+  StepSums sums;
+  for (const VelocityUpdate& update : evaluations_)
+    sums = forces.sweep()->predicted_close(times.step, update, loads, force_, state);
+  finish(forces, 0.5 * times.step, sums, work, report);
 }
 
-void FusedDampedVerlet::finish(ForceModel& forces, const StepTimes& times, const StepSums& sums,
-                               ClothState& state, Work& work, IntegratorReport& report) {
+void FusedDampedVerlet::finish(const ForceModel& forces, double half_step, const StepSums& sums, Work& work,
+                               IntegratorReport& report) {
   power_ = power_of(forces, sums);
-  holds_force_ = end_ != EndVelocity::renewed;
-  begin_force(forces, times.end, state);
-  work += 0.5 * times.step * power_;
+  work += half_step * power_;
   report.speed_squares = sums.after;
-  holds_position_force_ = is_open_ = false;
+  holds_position_force_ = is_open_ = false, holds_force_ = true;
 }
 
 IntegratorReport FusedDampedVerlet::constrained_step(ForceModel& forces, const StepTimes& times,
@@ -212,17 +210,15 @@ IntegratorReport FusedDampedVerlet::constrained_step(ForceModel& forces, const S
     Verlet::close_step(forces, times, state, work, report);
     return report;
   }
-  SpringSweep& sweep = *forces.sweep();
-  if (is_corrected()) sweep.predicted_close(times.step, first_, loads, force_, state);
-  const auto correct_closing = [&] {
-    if (const SparseField* closing = constraint_->closing_change(); corrects && closing)
+  StepSums sums;
+  for (const VelocityUpdate& update : evaluations_) {
+    const SparseField* closing = corrects ? constraint_->closing_change() : nullptr;
+    if (closing && &update == &evaluations_.back())
       closing_correction_ =
           half * DampingAt(forces.system(), forces.swept()).power(state.position, state.velocity, *closing);
-  };
-  if (end_ != EndVelocity::renewed) correct_closing();
-  const StepSums sums = sweep.predicted_close(times.step, DampedAt::prediction, loads, force_, state);
-  if (end_ == EndVelocity::renewed) correct_closing();
-  finish(forces, times, sums, state, work, report);
+    sums = forces.sweep()->predicted_close(times.step, update, loads, force_, state);
+  }
+  finish(forces, half, sums, work, report);
   work.damping_loss += closing_correction_;
   return report;
 }
@@ -234,7 +230,7 @@ void FusedDampedVerlet::open_constrained(ForceModel& forces, const StepTimes& ti
   keeps_before_ = constraint_->holds();
   if (keeps_before_) before_.position = state.position, before_.velocity = state.velocity;
   constraint_->before_kick(0.5 * times.step, times.step, state);
-  forces.sweep()->predicted_open(times.step, first_, loads, force_, state);
+  forces.sweep()->predicted_open(times.step, evaluations_[0], loads, force_, state);
   constraint_->after_drift(0.5 * times.step, state);
 }
 
@@ -260,7 +256,7 @@ void FusedDampedVerlet::find_before(const ForceModel& forces, double step, const
   before_.position = state.position, before_.velocity = state.velocity;
   add_scaled(-1, change, before_.velocity);
   if (const SparseField* closing = constraint_->closing_change()) add_scaled(-1, *closing, before_.velocity);
-  if (!is_corrected()) add_acceleration(forces.system(), -0.5 * step, force_, before_.velocity);
+  add_acceleration(forces.system(), -0.5 * step * evaluations_[0].held, force_, before_.velocity);
   add_scaled(-step, change, before_.position);
   add_scaled(-step, before_.velocity, before_.position);
   add_acceleration(forces.system(), -0.5 * step, force_, before_.velocity);

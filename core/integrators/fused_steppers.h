@@ -87,13 +87,12 @@ class FusedVerlet : public Verlet {
 };
 
 /// Verlet with every force at a velocity that is not solved for (EndVelocity::predicted, corrected or
-/// renewed), dampers along springs and air in the pass: one pass, two or three. With a constraint the first
-/// is divided where that acts; a step in which it moves particles is one of the general method where these
-/// are many or DampingAt does not know the damping.
+/// corrected_twice), dampers along springs and air in the pass: one pass, two or three. With a constraint the
+/// first is divided where that acts; a step in which it moves particles is one of the general method where
+/// these are many or DampingAt does not know the damping.
 class FusedDampedVerlet : public Verlet {
  public:
-  explicit FusedDampedVerlet(EndVelocity end)
-      : Verlet(end), first_(end == EndVelocity::predicted ? DampedAt::prediction : DampedAt::half_step) {}
+  explicit FusedDampedVerlet(EndVelocity end) : Verlet(end), evaluations_(evaluations_of(end)) {}
   static bool suits(const ForceModel& forces) {
     return forces.is_swept_whole() && forces.sweep()->takes_predicted();
   }
@@ -106,19 +105,18 @@ class FusedDampedVerlet : public Verlet {
   Work correct_work(ForceModel& forces, const StepTimes& times, const ClothState& state) override;
 
  private:
-  bool is_corrected() const { return first_ == DampedAt::half_step; }
   int begin_force(ForceModel& forces, double time, ClothState& state);
   Work power_of(const ForceModel& forces, const StepSums& sums) const;
   IntegratorReport constrained_step(ForceModel& forces, const StepTimes& times, ClothState& state,
                                     Work& work);
   void open_constrained(ForceModel& forces, const StepTimes& times, const SweepLoads& loads,
                         ClothState& state);
-  void finish(ForceModel& forces, const StepTimes& times, const StepSums& sums, ClothState& state, Work& work,
+  void finish(const ForceModel& forces, double half_step, const StepSums& sums, Work& work,
               IntegratorReport& report);
   double power_at_opening(ForceModel& forces, const StepTimes& times, bool is_few, const ClothState& state);
   void find_before(const ForceModel& forces, double step, const ClothState& state);
 
-  const DampedAt first_;       ///< the velocity of a step's first evaluation
+  const std::span<const VelocityUpdate> evaluations_;  ///< of a step
   ClothState before_;          ///< at the beginning of a step in which a constraint moves particles
   bool keeps_before_ = false;  ///< of the present step
 };

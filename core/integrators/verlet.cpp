@@ -5,11 +5,28 @@
 namespace cloth {
 namespace {
 
+constexpr VelocityUpdate once[] = {{1, 1}}, twice[] = {{1, 0}, {1, 1}},
+                         three_times[] = {{0.5, 0}, {1, 0.5}, {1, 1}};
+
 /// Of the velocities from which those after contact follow by one more evaluation of the damping
 /// (update_velocity_for_damping()): what contact changes there is larger by orders.
 constexpr double tolerance_before_contact = 1e-5;
 
 }  // namespace
+
+std::span<const VelocityUpdate> evaluations_of(EndVelocity end) {
+  switch (end) {
+    case EndVelocity::predicted:
+      return once;
+    case EndVelocity::corrected:
+      return twice;
+    case EndVelocity::corrected_twice:
+      return three_times;
+    case EndVelocity::solved:
+      break;
+  }
+  return {};
+}
 
 double power_beside(const Vec3Field& position_force, const Vec3Field& force, const SparseField& change) {
   if (!change.is_everywhere()) {
@@ -75,21 +92,23 @@ void Verlet::close_step(ForceModel& forces, const StepTimes& times, ClothState& 
   is_open_ = false;
 }
 
-/// From the velocity that the force of the beginning predicts, or from that at half the step, whose force
-/// predicts one.
+/// From the velocity of the first evaluation.
 void Verlet::finish_unsolved(ForceModel& forces, double half_step, ClothState& state) {
-  if (end_ != EndVelocity::predicted) {
-    forces.force(state.position, state.velocity, force_);
-    add_acceleration(forces.system(), half_step, force_, state.velocity);
-  }
+  const std::span<const VelocityUpdate> evaluations = evaluations_of(end_);
   Vec3Field& change = opening_force_;
-  change = force_;
-  power_ = forces.force_and_power(state.position, state.velocity, force_);
-  const auto from = change.flat();
-  const std::span<const double> to = force_.flat();
-  for (std::size_t k = 0; k < from.size(); ++k) from[k] = to[k] - from[k];
-  add_acceleration(forces.system(), half_step, change, state.velocity);
-  holds_force_ = end_ != EndVelocity::renewed;
+  for (std::size_t k = 0; k < evaluations.size(); ++k) {
+    change = force_;
+    if (k + 1 < evaluations.size())
+      forces.force(state.position, state.velocity, force_);
+    else
+      power_ = forces.force_and_power(state.position, state.velocity, force_);
+    const auto from = change.flat();
+    const std::span<const double> to = force_.flat();
+    for (std::size_t i = 0; i < from.size(); ++i)
+      from[i] = evaluations[k].gain * to[i] - evaluations[k].held * from[i];
+    add_acceleration(forces.system(), half_step, change, state.velocity);
+  }
+  holds_force_ = true;
 }
 
 /// The damping is still that of the opening kick.
@@ -119,20 +138,23 @@ const Vec3Field& Verlet::force(const ForceModel& forces) const {
   return forces.has_damping() ? force_ : forces.position_force();
 }
 
-/// From the velocity at half the step. `force_` is the guess, or is taken as it is. Returns the iterations.
+/// From the velocity at half the step. `force_` is the guess, or that at this velocity; what it leads to is
+/// evaluated once more by update_velocity_for_damping(). Returns the iterations.
 int Verlet::finish_velocity(ForceModel& forces, double half_step, double tolerance, ClothState& state) {
   holds_force_ = false;
-  if (forces.has_damping() && end_ == EndVelocity::predicted) {
-    Vec3Field& predicted = opening_force_;
-    predicted = state.velocity;
-    add_acceleration(forces.system(), half_step, force_, predicted);
-    forces.force(state.position, predicted, force_);
-    add_acceleration(forces.system(), half_step, force_, state.velocity);
+  if (!keeps_force(forces)) {
+    if (forces.has_damping())
+      return solver_.solve(forces, half_step, tolerance, state.position, state.velocity, force_);
+    add_acceleration(forces.system(), half_step, forces.position_force(), state.velocity);
     return 0;
   }
-  if (forces.has_damping() && end_ == EndVelocity::solved)
-    return solver_.solve(forces, half_step, tolerance, state.position, state.velocity, force_);
-  add_acceleration(forces.system(), half_step, force(forces), state.velocity);
+  if (end_ != EndVelocity::corrected) {
+    Vec3Field& ahead = opening_force_;
+    ahead = state.velocity;
+    add_acceleration(forces.system(), evaluations_of(end_)[0].gain * half_step, force_, ahead);
+    forces.force(state.position, ahead, force_);
+  }
+  add_acceleration(forces.system(), half_step, force_, state.velocity);
   return 0;
 }
 

@@ -14,16 +14,17 @@
 // corrected: a' = a(x', v1, t+h) with v1 = v_half + h/2 a(x', v_half, t+h): two evaluations from the velocity
 //            at half the step; the next step begins with a'. v1 is wrong by O(h^2), v' by O(h^3) a step:
 //            order 2. For m x'' = -K x - D x' with any K and D, in units where m = 1 and h = 1, the velocity
-//            u at half a step becomes u', with
-//                N (u' - u) = -K x' - C (u + u')/2,   C = D,   N = 1 + D^2/(4 - 2 D).
-//            Times u + u', the energy u N u + x' K x (x' = x + u) changes by - (u + u') C (u + u')/2: it
-//            never grows. It bounds the motion where K < 4 N, and N >= 1 for D < 2: a step with h D < 2 m is
-//            stable wherever an undamped one is, whether K and D have common eigenvectors or not. Taken where
-//            h D <= m (damping_load() of measure/stability_limit.h): of a motion without stiffness 1 - g +
-//            g^2/2 is left for e^-g, g = h D/m, which is least there.
-// renewed:   likewise, but the next step begins with a(x', v', t+h), a third evaluation. With P = 1 - D/2 and
-//            Q = P + D^2/4 the same holds with N = (1 + P Q)/(1 + P^2) and C = 2 (1 - P Q)/(1 + P^2), and P Q
-//            is left for e^-g: it falls as far as D < 2. Taken where h D <= 1.95 m.
+//            u at half a step becomes u', with X = D/2 and
+//                u' = u - A (K x' + D u),   A = 1 - X.
+//            Hence N (u' - u) = -K x' - D (u + u')/2 with N = A^-1 - X. Times u + u', the energy u N u + x' K
+//            x (x' = x + u) changes by - (u + u') D (u + u')/2: it never grows. It bounds the motion where K
+//            < 4 N, and N >= 1 since A (1 + X) <= 1, for A > 0: a step with h D < 2 m is stable wherever an
+//            undamped one is, whether K and D have common eigenvectors or not. Taken where h D <= m
+//            (damping_load() of measure/stability_limit.h): beyond, 1 - 2 X A, what is left of a velocity
+//            that no spring holds, rises again.
+// corrected_twice: a' = a(x', v2, t+h) with v1 = v_half + h/4 a(x', v_half, t+h), v2 = v_half + h/2 a(x', v1,
+//            t+h). The same with A = 1 - X + X^2/2, nearer to that of the solution, (1 + X)^-1: A (1 + X) = 1
+//            - X^2 (1 - X)/2, and 1 - 2 X A falls to 0 at h D = 2 m. Taken where h D <= 1.95 m.
 // predicted: a' = a(x', v + h a, t+h), at the velocity that the step predicts, and the next step begins with
 //            that a'. No equation is solved. The prediction is wrong by O(h^2), v' by O(h^3) a step: order 2
 //            (Groot and Warren 1997, with lambda = 1). On x'' = -omega^2 x - c x' the eigenvalues of a step

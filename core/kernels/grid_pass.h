@@ -107,7 +107,7 @@ struct Pass {
   double mass_of_free = 1;                ///< kg
   double step = 0;                        ///< s
   bool drift_first = false;               ///< explicit Euler: the position follows the old velocity
-  bool at_half_step = false;              ///< predicted Verlet: the velocity of DampedAt::half_step
+  double gain = 1, held = 1;              ///< predicted Verlet: of VelocityUpdate
   double* scratch = nullptr;              ///< 64-byte aligned
   /// Output: sums over each row, in consecutive arrays of grid.rows numbers, indexed by StepSum or, of
   /// Runge-Kutta, StageSum (+ stage): |v|^2 in (m/s)^2, with CellShares times the particle's share, the power
@@ -165,10 +165,9 @@ struct GridKernels {
   void (*verlet_open)(const Pass& pass);
   void (*verlet_between)(const Pass& pass);
   void (*verlet_close)(const Pass& pass);
-  /// Velocity Verlet with every force at the predicted velocity v + h f/m, or (`at_half_step`) at v + h/2
-  /// f/m: `force` holds f before and after. In parts: `predicted_open` drifts and leaves that velocity in
-  /// `velocity`, `predicted_close` computes f there and completes the velocity; with a step of 0 it only
-  /// computes f at `velocity`.
+  /// Velocity Verlet with every force at a velocity that is not solved for: `force` holds f before and after.
+  /// In parts: `predicted_open` drifts and leaves v + (1 + held) h/2 f/m in `velocity`; `predicted_close`
+  /// computes f' there and adds h/2 (gain f' - held f)/m; with a step of 0 it only computes f'.
   void (*predicted)(const Pass& pass);
   void (*predicted_open)(const Pass& pass);
   void (*predicted_close)(const Pass& pass);

@@ -128,7 +128,7 @@ void drift_predict_row(const Pass& pass, int row) {
   const ConstRow f = row_of(pass, pass.force, row);
   const double* inverse_mass = inverse_masses(pass, row);
   const V half_step = Lanes::set(0.5 * pass.step), step = Lanes::set(pass.step);
-  const V ahead = pass.at_half_step ? Lanes::zero() : half_step;
+  const V ahead = Lanes::set(0.5 * pass.step * pass.held);
   const int columns = pass.grid.columns;
   int j = 0;
   for (; j + Lanes::width <= columns; j += Lanes::width)
@@ -140,7 +140,7 @@ template <bool Drift, Law law, Share share>
 void predicted_rows(const Pass& pass) {
   PredictedUpdate<share> update{};
   update.half_step = Lanes::set(0.5 * pass.step), update.damping = Lanes::set(pass.damping);
-  update.held = Lanes::set(pass.at_half_step ? 0 : 1);
+  update.gain = Lanes::set(pass.gain), update.held = Lanes::set(pass.held);
   const int start = first_row_of_springs(pass.first);
   if (Drift) drift_predict_row(pass, start);
   if (Drift) drift_predict_row(pass, start + 1);

@@ -110,7 +110,7 @@ void GridSweep::prepare(const Plan& plan, std::size_t index) {
   pass.mass_of_free = has_common_mass() ? mass() : 1;
   pass.step = plan.step;
   pass.drift_first = plan.drift_first;
-  pass.at_half_step = plan.damped_at == DampedAt::half_step;
+  pass.gain = plan.update.gain, pass.held = plan.update.held;
   pass.scratch = band.scratch.data();
   for (const Attached& attached : plan.fields) {
     if (!attached.values) continue;
@@ -245,13 +245,13 @@ void GridSweep::verlet_steps(double step, const SweepLoads& loads, std::span<dou
   });
 }
 
-StepSums GridSweep::predicted(double step, DampedAt at, const SweepLoads& loads, Vec3Field& force,
-                              ClothState& state) {
+StepSums GridSweep::predicted(double step, const VelocityUpdate& update, const SweepLoads& loads,
+                              Vec3Field& force, ClothState& state) {
   assert(has_common_mass() && !loads.load);
   const Plan plan{.kernel = kernels_->predicted,
                   .loads = loads,
                   .step = step,
-                  .damped_at = at,
+                  .update = update,
                   .fields = {{{&Pass::position, &state.position, kernels::step_halo},
                               {&Pass::velocity, &state.velocity, kernels::step_halo},
                               {&Pass::force, &force, kernels::step_halo}}}};
@@ -259,26 +259,26 @@ StepSums GridSweep::predicted(double step, DampedAt at, const SweepLoads& loads,
   return step_sums_of(plan, 0);
 }
 
-void GridSweep::predicted_open(double step, DampedAt at, const SweepLoads& loads, Vec3Field& force,
-                               ClothState& state) {
+void GridSweep::predicted_open(double step, const VelocityUpdate& update, const SweepLoads& loads,
+                               Vec3Field& force, ClothState& state) {
   const Plan plan{.kernel = kernels_->predicted_open,
                   .loads = loads,
                   .step = step,
-                  .damped_at = at,
+                  .update = update,
                   .fields = {{{&Pass::position, &state.position, 0},
                               {&Pass::velocity, &state.velocity, 0},
                               {&Pass::force, &force, 0}}}};
   run_once(PassKind::drift, plan);
 }
 
-StepSums GridSweep::predicted_close(double step, DampedAt at, const SweepLoads& loads, Vec3Field& force,
-                                    ClothState& state) {
+StepSums GridSweep::predicted_close(double step, const VelocityUpdate& update, const SweepLoads& loads,
+                                    Vec3Field& force, ClothState& state) {
   assert(has_common_mass() && !loads.load);
   const int velocity_halo = loads.has_dampers() ? kernels::step_halo : 0;
   const Plan plan{.kernel = kernels_->predicted_close,
                   .loads = loads,
                   .step = step,
-                  .damped_at = at,
+                  .update = update,
                   .fields = {{{&Pass::position, &state.position, 0},  // only read
                               {&Pass::velocity, &state.velocity, velocity_halo},
                               {&Pass::force, &force, 0}}}};

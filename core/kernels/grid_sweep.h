@@ -29,12 +29,12 @@ class GridSweep : public SpringSweep {
   double verlet(double step, const SweepLoads& loads, Vec3Field& force, ClothState& state) override;
   void verlet_steps(double step, const SweepLoads& loads, std::span<double> squares, Vec3Field& force,
                     ClothState& state) override;
-  StepSums predicted(double step, DampedAt at, const SweepLoads& loads, Vec3Field& force,
+  StepSums predicted(double step, const VelocityUpdate& update, const SweepLoads& loads, Vec3Field& force,
                      ClothState& state) override;
-  void predicted_open(double step, DampedAt at, const SweepLoads& loads, Vec3Field& force,
+  void predicted_open(double step, const VelocityUpdate& update, const SweepLoads& loads, Vec3Field& force,
                       ClothState& state) override;
-  StepSums predicted_close(double step, DampedAt at, const SweepLoads& loads, Vec3Field& force,
-                           ClothState& state) override;
+  StepSums predicted_close(double step, const VelocityUpdate& update, const SweepLoads& loads,
+                           Vec3Field& force, ClothState& state) override;
   bool takes_predicted() const override { return true; }
   void runge_kutta(double step, const SweepLoads& loads, std::span<StageSums> sums,
                    ClothState& state) override;
@@ -70,7 +70,7 @@ class GridSweep : public SpringSweep {
     const SweepLoads& loads;
     double step = 0;  ///< s
     bool drift_first = false;
-    DampedAt damped_at = DampedAt::prediction;
+    VelocityUpdate update;             ///< of predicted Verlet
     std::array<Attached, 3> fields{};  ///< entries without `values` are unused
     int sums = kernels::step_sums;
     int scratch_rows = kernels::step_scratch_rows;

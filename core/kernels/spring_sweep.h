@@ -44,9 +44,11 @@ struct SweepLoads {
   SweptAir air{};  ///< only for euler(), predicted() and runge_kutta(), and only if takes_air()
 };
 
-/// The velocity at which a step of velocity Verlet takes damping and air: v + h f/m, which the force f
-/// predicts for its end, or v + h/2 f/m.
-enum class DampedAt { prediction, half_step };
+/// How a step of velocity Verlet that does not solve for its velocity goes on from one of its evaluations:
+/// where the velocity has held h/2 f/m of the evaluation before, it gets h/2 (gain f' - held f)/m.
+struct VelocityUpdate {
+  double gain = 1, held = 1;
+};
 
 /// Sums over all particles and springs that a step computes in the same pass.
 struct StepSums {
@@ -90,20 +92,20 @@ class SpringSweep {
   /// Stores the sum of |v|^2 after each step in `squares`.
   virtual void verlet_steps(double step, const SweepLoads& loads, std::span<double> squares, Vec3Field& force,
                             ClothState& state) = 0;
-  /// One step of velocity Verlet in which every force, with dampers and air, is taken at the velocity
-  /// `DampedAt` (integrators/verlet.h). `force` (N) holds f before and after. No load. Only if
-  /// takes_predicted(). The sums `before`, `dampers` and `air` are those at that velocity.
-  virtual StepSums predicted(double /*step*/, DampedAt, const SweepLoads&, Vec3Field& /*force*/,
+  /// Of a step of velocity Verlet whose forces, dampers and air included, are taken at a velocity that is not
+  /// solved for (integrators/verlet.h): drift and first evaluation. `force` (N) holds f before and after. No
+  /// load. Only if takes_predicted(). The sums `before`, `dampers` and `air` are those at the velocity of the
+  /// evaluation, v + (1 + held) h/2 f/m.
+  virtual StepSums predicted(double /*step*/, const VelocityUpdate&, const SweepLoads&, Vec3Field& /*force*/,
                              ClothState&) {
     return {};
   }
-  /// The same in two parts: the drift, which leaves that velocity in the state; and f there with the end of
-  /// the step. With step = 0 the second part only computes f at the state. After a step at half_step, the
-  /// second part at the prediction evaluates f again, at the velocity that this step has found.
-  virtual void predicted_open(double /*step*/, DampedAt, const SweepLoads&, Vec3Field& /*force*/,
+  /// The same in two parts: the drift, which leaves that velocity in the state; and an evaluation at the
+  /// state, which may be repeated. With step = 0 it only computes f.
+  virtual void predicted_open(double /*step*/, const VelocityUpdate&, const SweepLoads&, Vec3Field& /*force*/,
                               ClothState&) {}
-  virtual StepSums predicted_close(double /*step*/, DampedAt, const SweepLoads&, Vec3Field& /*force*/,
-                                   ClothState&) {
+  virtual StepSums predicted_close(double /*step*/, const VelocityUpdate&, const SweepLoads&,
+                                   Vec3Field& /*force*/, ClothState&) {
     return {};
   }
   virtual bool takes_predicted() const { return false; }

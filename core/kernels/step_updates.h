@@ -114,8 +114,8 @@ struct VerletBetweenUpdate {
   }
 };
 
-/// v += h/2 f/m, x += h v, v += ahead f/m for a row: the drift of velocity Verlet, and in `v` the velocity
-/// that the force f predicts at its end (ahead = h/2), or that of the drift (0).
+/// v += h/2 f/m, x += h v, v += ahead f/m for a row: the drift of velocity Verlet, and in `v` the velocity of
+/// the next evaluation.
 template <bool Edge>
 CLOTHLAB_INLINE void drift_predict_block(const Row& x, const Row& v, const ConstRow& f,
                                          const double* inverse_mass, V half_step, V step, V ahead, int j,
@@ -128,13 +128,12 @@ CLOTHLAB_INLINE void drift_predict_block(const Row& x, const Row& v, const Const
   store<Edge>(v, j, count, plus(half, Lanes::mul(ahead, inverse), force));
 }
 
-/// The closing kick after drift_predict_block: f' = p(x') - c v, with dampers and air in p, at the velocity v
-/// that it left; v' = v + h/2 (f' - held f)/m, where v holds the kick of `held` times f (1 or 0). With
-/// half_step = 0 the velocity stays as it is.
+/// An evaluation after drift_predict_block, or after another: f' = p(x') - c v, with dampers and air in p, at
+/// the velocity v; then v += h/2 (gain f' - held f)/m. With half_step = 0 the velocity stays as it is.
 template <Share share>
 struct PredictedUpdate {
   RowShares<share> shares{};
-  V half_step, held, damping;
+  V half_step, gain, held, damping;
   Row velocity, force;
   const double* inverse_mass;
   V before, after;  ///< |v|^2 and |v'|^2
@@ -145,7 +144,7 @@ struct PredictedUpdate {
                                                : Lanes::load(inverse_mass + j));
     const Vector v = load_part<Edge>(velocity, j, count);
     const Vector total = minus(p, shares.of(damping, j), v);
-    const Vector next = plus(v, scale, minus(total, held, load_part<Edge>(force, j, count)));
+    const Vector next = plus(v, scale, minus(scaled(gain, total), held, load_part<Edge>(force, j, count)));
     before = shares.plus_square(before, v, j);
     after = shares.plus_square(after, next, j);
     store<Edge>(velocity, j, count, next);

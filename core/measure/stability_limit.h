@@ -78,7 +78,7 @@ double predicted_damping_load(const Scene& scene, double step);
 double damping_load(const Scene& scene, double step);
 /// Up to these damping_load()s Verlet may evaluate its damping twice, or three times, instead of solving for
 /// it (integrators/verlet.h); the rest up to 2 is left for rounding.
-inline constexpr double largest_corrected_load = 1, largest_renewed_load = 1.95;
+inline constexpr double largest_corrected_load = 1, largest_corrected_twice_load = 1.95;
 /// Up to this load damping is predicted: the rest is left for rounding and for motions near the limit, which
 /// the prediction damps too little.
 inline constexpr double largest_predicted_load = 0.95;

@@ -41,7 +41,7 @@ DampingLoads damping_loads(const Scene& scene, double step) {
 EndVelocity end_velocity_for(const Scene& scene, const DampingLoads& loads) {
   if (loads.whole <= allowed_damping_load(scene)) return EndVelocity::predicted;
   if (loads.damping <= largest_corrected_load) return EndVelocity::corrected;
-  return loads.damping <= largest_renewed_load ? EndVelocity::renewed : EndVelocity::solved;
+  return loads.damping <= largest_corrected_twice_load ? EndVelocity::corrected_twice : EndVelocity::solved;
 }
 
 double allowed_damping_load(const Scene& scene) {

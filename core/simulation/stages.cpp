@@ -79,9 +79,9 @@ std::string damping_text(const Scene& scene, const ClothSystem& system, bool lim
   const std::string reason = fmt::format(
       "(h^2 K + 4 h D may reach {:.2f} of 4 m, predicted up to {}; h D {:.2f} of m, evaluated "
       "twice up to {}, three times up to {})",
-      loads.whole, most, loads.damping, largest_corrected_load, largest_renewed_load);
+      loads.whole, most, loads.damping, largest_corrected_load, largest_corrected_twice_load);
   if (kind.end_velocity == EndVelocity::corrected) return ", damping evaluated twice " + reason;
-  if (kind.end_velocity == EndVelocity::renewed) return ", damping evaluated three times " + reason;
+  if (kind.end_velocity == EndVelocity::corrected_twice) return ", damping evaluated three times " + reason;
   return ", damping solved for by conjugate gradients " + reason;
 }
 

@@ -137,12 +137,11 @@ struct Recurrence {
 };
 
 Recurrence recurrence(EndVelocity end, double g) {
-  const double p = 1 - g / 2, q = p + g * g / 4;
-  if (end == EndVelocity::corrected) return {1 - g + g * g / 2, p};
-  return {p * q, 0.5 * (1 + p * p)};
+  const double x = g / 2, a = end == EndVelocity::corrected ? 1 - x : 1 - x + x * x / 2;
+  return {1 - g * a, a};
 }
 
-constexpr EndVelocity evaluated_again[] = {EndVelocity::corrected, EndVelocity::renewed};
+constexpr EndVelocity evaluated_again[] = {EndVelocity::corrected, EndVelocity::corrected_twice};
 
 TEST(CorrectedDamping, MovesAnOscillatorByItsTraceAndDeterminant) {
   for (const EndVelocity end : evaluated_again)
@@ -179,7 +178,7 @@ TEST(CorrectedDamping, IsStableToTheLimitOfAnUndampedClothAndGrowsAboveItsOwn) {
 /// Springs of several stiffnesses and dampers that are equal on all of them have no common eigenvectors.
 TEST(CorrectedDamping, MakesNoEnergyInAClothAtBothOfItsBounds) {
   for (const EndVelocity end : evaluated_again)
-    for (const double load : {0.3, largest_corrected_load, largest_renewed_load}) {
+    for (const double load : {0.3, largest_corrected_load, largest_corrected_twice_load}) {
       Scene scene = bare_sheet(9, 9, 0.02, 0.05);
       scene.springs = SpringMaterial{.structural = 60, .shear = 3, .flexion = 0.5, .damping = 0};
       const double h = 1.98 / guaranteed_frequency(scene);
@@ -214,7 +213,8 @@ Scene material_in_wind() {
   return scene;
 }
 
-constexpr EndVelocity unsolved[] = {EndVelocity::predicted, EndVelocity::corrected, EndVelocity::renewed};
+constexpr EndVelocity unsolved[] = {EndVelocity::predicted, EndVelocity::corrected,
+                                    EndVelocity::corrected_twice};
 
 TEST(UnsolvedDamping, IsTheSameInThePassAndInTheGeneralMethod) {
   for (const EndVelocity end : unsolved)
@@ -333,7 +333,7 @@ TEST(PredictedDamping, IsChosenWhereItsLimitAllowsAndExplainSaysWhy) {
   EXPECT_NE(integrate_text(scene).find("damping evaluated three times"), std::string::npos)
       << integrate_text(scene);
   scene.springs->damping *= 5;
-  EXPECT_GT(damping_load(scene, h), largest_renewed_load);
+  EXPECT_GT(damping_load(scene, h), largest_corrected_twice_load);
   EXPECT_GT(velocity_iterations(scene), 0);
   EXPECT_NE(integrate_text(scene).find("conjugate gradients"), std::string::npos) << integrate_text(scene);
   scene.springs->damping = 0, scene.air.reset(), scene.damping = 0.001;

@@ -75,7 +75,8 @@ void expect_same_in_the_pass(EndVelocity end) {
 }
 
 TEST(RateInThePass, IsTheSameInThePassAndInTheGeneralMethodWhereTheRateHoldsSprings) {
-  for (const EndVelocity end : {EndVelocity::predicted, EndVelocity::corrected, EndVelocity::renewed}) {
+  for (const EndVelocity end :
+       {EndVelocity::predicted, EndVelocity::corrected, EndVelocity::corrected_twice}) {
     SCOPED_TRACE(static_cast<int>(end));
     expect_same_in_the_pass(end);
   }

@@ -1,6 +1,10 @@
 // A cloth that damping lets come to rest does so under contact, and then it lies still.
 #include <gtest/gtest.h>
 
+#include <utility>
+
+#include "measure/stability_limit.h"
+#include "simulation/simulation.h"
 #include "simulation/time_step.h"
 #include "support/contact_check.h"
 
@@ -38,6 +42,27 @@ TEST_P(ADampedScene, ComesToRestNearTheLongestStableStepToo) {
   ASSERT_FALSE(run.stop) << describe(*run.stop);
   EXPECT_LT(run.kinetic, 1e-6 * run.peak);
   EXPECT_LT(run.highest_after, 1e-6 * run.peak) << "it began to move again";
+}
+
+/// Damping that is evaluated twice and three times in place of a solve, at what it is allowed for.
+TEST_P(ADampedScene, ComesToRestWithStiffDampersNearTheLongestStableStepToo) {
+  for (const auto& [end, load] : {std::pair{EndVelocity::corrected, largest_corrected_load},
+                                  std::pair{EndVelocity::corrected_twice, largest_corrected_twice_load}}) {
+    Scene scene = damped(contact_scene(GetParam()));
+    scene.integrator.time_step.reset();
+    scene.integrator.time_step = resolved_time_step(scene).value();
+    const auto load_with = [&](double damping) {
+      scene.springs->damping = damping;
+      return damping_load(scene, *scene.integrator.time_step);
+    };
+    const double without = load_with(0);
+    scene.springs->damping = 0.999 * (load - without) / (load_with(1) - without);
+    EXPECT_EQ(Simulation(scene).stepper().end_velocity, end);
+    const RestingRun run = rest_run(scene, {.time = 5, .watched = 0.5, .prepare = thrown({0, -1, 0})});
+    ASSERT_FALSE(run.stop) << describe(*run.stop);
+    EXPECT_LT(run.kinetic, 1e-6 * run.peak) << load;
+    EXPECT_LT(run.highest_after, 1e-6 * run.peak) << load << ": it began to move again";
+  }
 }
 
 /// Where two faces of the cloth share the tip of a box, and springs damp what is beside it.

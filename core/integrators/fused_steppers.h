@@ -1,7 +1,8 @@
-// Explicit methods whose whole step is one pass of the kernels over the particles, force and motion together
-// (kernels/spring_sweep.h). They agree with the general methods of euler.h, verlet.h and rk4.h to rounding.
-// They need kernels that compute every force of the scene (ForceModel::is_swept_whole()); only the Euler
-// methods take other forces, as a load. make_stepper() of registry.h chooses them.
+// Explicit methods whose whole step is one pass of the kernels over the particles, force and motion together,
+// or two or three that repeat the force (kernels/spring_sweep.h). They agree with the general methods of
+// euler.h, verlet.h and rk4.h to rounding. They need kernels that compute every force of the scene
+// (ForceModel::is_swept_whole()); only the Euler methods take other forces, as a load. make_stepper() of
+// registry.h chooses them.
 #pragma once
 
 #include "integrators/euler.h"

@@ -148,7 +148,7 @@ int Verlet::finish_velocity(ForceModel& forces, double half_step, double toleran
     add_acceleration(forces.system(), half_step, forces.position_force(), state.velocity);
     return 0;
   }
-  if (end_ != EndVelocity::corrected) {
+  if (end_ == EndVelocity::corrected_twice) {
     Vec3Field& ahead = opening_force_;
     ahead = state.velocity;
     add_acceleration(forces.system(), evaluations_of(end_)[0].gain * half_step, force_, ahead);

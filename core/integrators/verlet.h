@@ -23,8 +23,9 @@
 //            (damping_load() of measure/stability_limit.h): beyond, 1 - 2 X A, what is left of a velocity
 //            that no spring holds, rises again.
 // corrected_twice: a' = a(x', v2, t+h) with v1 = v_half + h/4 a(x', v_half, t+h), v2 = v_half + h/2 a(x', v1,
-//            t+h). The same with A = 1 - X + X^2/2, nearer to that of the solution, (1 + X)^-1: A (1 + X) = 1
-//            - X^2 (1 - X)/2, and 1 - 2 X A falls to 0 at h D = 2 m. Taken where h D <= 1.95 m.
+//            t+h); v2 is wrong by O(h^2). The rest is the same with A = 1 - X + X^2/2, nearer to that of the
+//            solution, (1 + X)^-1: A (1 + X) = 1 - X^2 (1 - X)/2, and 1 - 2 X A falls to 0 at h D = 2 m.
+//            Taken where h D <= 1.95 m.
 // predicted: a' = a(x', v + h a, t+h), at the velocity that the step predicts, and the next step begins with
 //            that a'. No equation is solved. The prediction is wrong by O(h^2), v' by O(h^3) a step: order 2
 //            (Groot and Warren 1997, with lambda = 1). On x'' = -omega^2 x - c x' the eigenvalues of a step
@@ -34,15 +35,16 @@
 //            is stable, whether K and D have common eigenvectors or not. predicted_damping_load() of
 //            measure/stability_limit.h bounds the left side for a scene.
 //
-// After continuous contact has moved the positions, the closing kick is repeated at the new ones
-// (update_velocity_for_positions()), and once more with the damping at the velocities that contact has set
+// After continuous contact has moved the positions, the closing kick is that at the new ones
+// (update_velocity_for_positions()), and is repeated with the damping at the velocities that contact has set
 // (update_velocity_for_damping()).
 //
 // A constraint of the positions (DriftConstraint) acts between the drift and the closing kick, on x' and
 // v_half; where the damping is predicted, on x' and the predicted velocity.
 //
 // Order 2 with damping, drag and wind. A step costs one force evaluation, and a second one where contact or
-// an edit has changed the state since the last step.
+// an edit has changed the state since the last step; evaluations of the damping at the same positions are not
+// counted.
 #pragma once
 
 #include "forces/velocity_solver.h"

@@ -95,7 +95,7 @@ class SpringSweep {
   /// Of a step of velocity Verlet whose forces, dampers and air included, are taken at a velocity that is not
   /// solved for (integrators/verlet.h): drift and first evaluation. `force` (N) holds f before and after. No
   /// load. Only if takes_predicted(). The sums `before`, `dampers` and `air` are those at the velocity of the
-  /// evaluation, v + (1 + held) h/2 f/m.
+  /// evaluation, v + (1 + held) h/2 f/m: by default the one that f predicts, hence the name.
   virtual StepSums predicted(double /*step*/, const VelocityUpdate&, const SweepLoads&, Vec3Field& /*force*/,
                              ClothState&) {
     return {};

@@ -76,8 +76,9 @@ std::optional<double> guaranteed_step(const std::string& method, const Scene& sc
 double predicted_damping_load(const Scene& scene, double step);
 /// A bound on the largest eigenvalue of h D/m in every shape of the cloth.
 double damping_load(const Scene& scene, double step);
-/// Up to these damping_load()s Verlet may evaluate its damping twice, or three times, instead of solving for
-/// it (integrators/verlet.h); the rest up to 2 is left for rounding.
+/// Up to these damping_load()s Verlet may evaluate its damping twice, and three times, instead of solving for
+/// it (integrators/verlet.h): beyond 1 two evaluations damp ever less, and three are stable below 2, of which
+/// a little is left for rounding.
 inline constexpr double largest_corrected_load = 1, largest_corrected_twice_load = 1.95;
 /// Up to this load damping is predicted: the rest is left for rounding and for motions near the limit, which
 /// the prediction damps too little.

@@ -71,17 +71,20 @@ std::string damping_text(const Scene& scene, const ClothSystem& system, bool lim
       stepper_kind(scene.integrator.method, forces,
                    {.constrained = limited, .end_velocity = end_velocity_for(scene, loads)});
   const double most = allowed_damping_load(scene);
+  const char* const where = kind.fused ? " in the pass of the forces" : "";
   if (!forces.couples_particles() && kind.end_velocity == EndVelocity::solved)
     return ", damping solved for each particle by itself";
   if (kind.end_velocity == EndVelocity::predicted)
     return fmt::format(", damping at the predicted velocity{} (h^2 K + 4 h D is {:.2f} of 4 m, at most {})",
-                       kind.fused ? " in the pass of the forces" : "", loads.whole, most);
+                       where, loads.whole, most);
   const std::string reason = fmt::format(
       "(h^2 K + 4 h D may reach {:.2f} of 4 m, predicted up to {}; h D {:.2f} of m, evaluated "
       "twice up to {}, three times up to {})",
       loads.whole, most, loads.damping, largest_corrected_load, largest_corrected_twice_load);
-  if (kind.end_velocity == EndVelocity::corrected) return ", damping evaluated twice " + reason;
-  if (kind.end_velocity == EndVelocity::corrected_twice) return ", damping evaluated three times " + reason;
+  if (kind.end_velocity == EndVelocity::corrected)
+    return fmt::format(", damping evaluated twice{} {}", where, reason);
+  if (kind.end_velocity == EndVelocity::corrected_twice)
+    return fmt::format(", damping evaluated three times{} {}", where, reason);
   return ", damping solved for by conjugate gradients " + reason;
 }
 

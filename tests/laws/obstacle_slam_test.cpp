@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <set>
 
 #include "contact/continuous_contact.h"
 #include "scene/obstacle_shape.h"
@@ -114,16 +115,20 @@ TEST(AStepOfContact, ThatWasInterruptedIsTakenAgainToTheBit) {
     EXPECT_EQ(interruptions, interrupts ? 1 : 0);
     return simulation.checkpoint();
   };
+  std::set<EndVelocity> ways;
   for (const char* method : {"verlet", "implicit-euler", "bdf2", "dormand-prince", "xpbd", "vbd"})
-    for (const double damping : {1e-4, 3e-3}) {
+    for (const double damping : {3e-3, 0.17, 0.3, 1.0}) {
       Scene scene = hung_before(&box_shape(), {0, 0, -0.5}, {0, 0, 2.2});
       scene.integrator.method = method;
       scene.springs->damping = damping;
+      ways.insert(Simulation(scene).stepper().end_velocity);
       const Checkpoint straight = go(scene, false), interrupted = go(scene, true);
       EXPECT_EQ(straight.state, interrupted.state) << method << " " << damping;
       EXPECT_EQ(straight.ledger.forces.damping_loss, interrupted.ledger.forces.damping_loss)
           << method << " " << damping;
+      EXPECT_EQ(straight.ledger.contact, interrupted.ledger.contact) << method << " " << damping;
     }
+  EXPECT_EQ(ways.size(), 4) << "Verlet took its damping in another way";
 }
 
 }  // namespace

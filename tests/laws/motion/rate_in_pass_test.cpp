@@ -1,5 +1,5 @@
-// Verlet with predicted damping while a deformation rate holds springs: the fused pass against the general
-// method, the ledger, and the damping of single particles that it needs.
+// Verlet with damping that is not solved for while a deformation rate holds springs: the fused pass against
+// the general method, the ledger, and the damping of single particles that it needs.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -6,7 +6,8 @@
 // own velocity in D (Force::add_damping). Every method receives them through ForceModel. Explicit and
 // Runge-Kutta methods evaluate p - D v with the velocity of the evaluation; Verlet does so in its opening
 // kick and solves for the velocity at the end of the step in its closing kick, or takes one that a
-// step predicts or corrects (verlet.h); the fused steppers compute both on grids within their pass (kernels/grid_air.h).
+// step predicts or corrects (verlet.h); the fused steppers compute both on grids within their pass
+// (kernels/grid_air.h).
 #pragma once
 
 #include "forces/force.h"

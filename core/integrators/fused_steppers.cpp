@@ -243,10 +243,10 @@ double FusedDampedVerlet::power_at_opening(ForceModel& forces, const StepTimes& 
   const SparseField& change = *constraint_->opening_change();
   if (is_few)
     return DampingAt(forces.system(), forces.swept()).power(before_.position, before_.velocity, change);
-  if (opening_force_.size() != state.position.size()) opening_force_ = Vec3Field(state.position.size());
+  if (scratch_.size() != state.position.size()) scratch_ = Vec3Field(state.position.size());
   forces.update(before_.position, times.begin);
-  forces.force(before_.position, before_.velocity, opening_force_);
-  return power_beside(forces.position_force(), opening_force_, change);
+  forces.force(before_.position, before_.velocity, scratch_);
+  return power_beside(forces.position_force(), scratch_, change);
 }
 
 /// The state at the beginning of the step, to rounding, from the drifted one and what the constraint has

@@ -95,7 +95,7 @@ void Verlet::close_step(ForceModel& forces, const StepTimes& times, ClothState& 
 /// From the velocity of the first evaluation.
 void Verlet::finish_unsolved(ForceModel& forces, double half_step, ClothState& state) {
   const std::span<const VelocityUpdate> evaluations = evaluations_of(end_);
-  Vec3Field& change = opening_force_;
+  Vec3Field& change = scratch_;
   for (std::size_t k = 0; k < evaluations.size(); ++k) {
     change = force_;
     if (k + 1 < evaluations.size())
@@ -149,7 +149,7 @@ int Verlet::finish_velocity(ForceModel& forces, double half_step, double toleran
     return 0;
   }
   if (end_ == EndVelocity::corrected_twice) {
-    Vec3Field& ahead = opening_force_;
+    Vec3Field& ahead = scratch_;
     ahead = state.velocity;
     add_acceleration(forces.system(), evaluations_of(end_)[0].gain * half_step, force_, ahead);
     forces.force(state.position, ahead, force_);

@@ -90,11 +90,10 @@ class Verlet : public Integrator {
   /// changed the velocity.
   void correct_opening(const ForceModel& forces, double half_step, Work& work) const;
 
-  const EndVelocity end_;
   DriftConstraint* constraint_ = nullptr;
-  Work power_;                         ///< at the end of the last step
-  Vec3Field force_;                    ///< p - D v, N; used only where has_damping()
-  Vec3Field opening_force_;            ///< N, scratch
+  Work power_;       ///< at the end of the last step
+  Vec3Field force_;  ///< p - D v, N; used only where has_damping()
+  Vec3Field scratch_;
   double closing_correction_ = 0;      ///< J, of the constraint's part of the damping loss, last step
   bool holds_position_force_ = false;  ///< the force model was last updated at the state
   bool is_open_ = false;               ///< open_step() was the last call
@@ -107,6 +106,7 @@ class Verlet : public Integrator {
   int finish_velocity(ForceModel& forces, double half_step, double tolerance, ClothState& state);
   void finish_unsolved(ForceModel& forces, double half_step, ClothState& state);
 
+  const EndVelocity end_;
   VelocitySolver solver_;
 };
 

@@ -163,6 +163,7 @@ std::string to_text(const Explanation& e) {
   text += step ? fmt::format("\nRun with {} at {:.6g} s{}\n", e.scene.integrator.method, *step,
                              e.scene.integrator.time_step ? "" : " (auto)")
                : "\n" + cloth::no_stable_step_text(e.scene) + "\n";
+  if (const std::string beyond = cloth::too_long_step_text(e.scene); !beyond.empty()) text += beyond + '\n';
   return text;
 }
 
@@ -209,6 +210,8 @@ std::string to_json(const Explanation& e) {
          {"multigrid_s", solve.choice.multigrid ? json(*solve.choice.multigrid) : json(nullptr)}});
   root["method"] = e.scene.integrator.method;
   root["time_step_s"] = finite(cloth::resolved_time_step(e.scene));
+  if (const std::string beyond = cloth::too_long_step_text(e.scene); !beyond.empty())
+    root["time_step_notice"] = beyond;
   return root.dump(2) + "\n";
 }
 

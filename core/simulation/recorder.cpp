@@ -111,7 +111,10 @@ class Run {
     if (options_.progress) simulation_.set_stop_test([this] { return !may_finish_step(); });
     summary.threads = simulation_.threads();
     summary.notice = fmt::format("{}", fmt::join(scene_notices(scene), "; "));
-    if (!script_.commands) note(uneven_duration_text(scene.duration, simulation_.time_step()));
+    if (!script_.commands) {
+      note(uneven_duration_text(scene.duration, simulation_.time_step()));
+      note(too_long_step_text(scene));
+    }
     if (simulation_.unreachable_rate()) note(describe(*simulation_.unreachable_rate(), simulation_.system()));
   }
 

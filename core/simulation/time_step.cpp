@@ -55,6 +55,18 @@ std::string no_stable_step_text(const Scene& scene) {
          "viscous damping; add \"damping\" or choose another method";
 }
 
+std::string too_long_step_text(const Scene& scene) {
+  const std::string& method = scene.integrator.method;
+  const double step = scene.integrator.time_step.value_or(0), limit = stable_step(method, scene).value_or(0);
+  if (!(step > 0) || step < limit) return "";
+  if (!(limit > 0))
+    return fmt::format("integrator.time_step = {:.6g} s: {} is stable at no step for this scene", step,
+                       method);
+  return fmt::format(
+      "integrator.time_step = {:.6g} s is beyond the {:.6g} s at which {} is stable for this scene", step,
+      limit, method);
+}
+
 std::int64_t steps_per_row(double record_interval, double time_step) {
   return whole_steps(std::round(record_interval / time_step));
 }

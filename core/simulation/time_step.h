@@ -26,6 +26,10 @@ double step_dividing(double interval, double time_step);
 /// A message that says why "auto" finds no stable step for this scene.
 std::string no_stable_step_text(const Scene& scene);
 
+/// A message where the scene's own step is not below stable_step(), so that motions grow that the cloth does
+/// not make; else empty. A deformation rate or contact can hide that.
+std::string too_long_step_text(const Scene& scene);
+
 /// Steps between two rows of a recording: the interval in steps, rounded, at least 1.
 std::int64_t steps_per_row(double record_interval, double time_step);
 

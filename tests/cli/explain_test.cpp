@@ -87,6 +87,13 @@ TEST(Explain, TakesSettings) {
   EXPECT_EQ(explained("free-fall --set springs.flexion=0")["springs"]["flexion"], 0);
 }
 
+TEST(Explain, SaysThatAStepOfTheSceneIsBeyondTheStableOne) {
+  const std::string flag = "flag --set cloth.rows=129 --set cloth.columns=129";
+  EXPECT_TRUE(explained(flag)["time_step_notice"].get<std::string>().find("beyond") != std::string::npos);
+  EXPECT_FALSE(explained(flag + " --set integrator.time_step=0.00018").contains("time_step_notice"));
+  EXPECT_FALSE(explained("flag").contains("time_step_notice"));
+}
+
 TEST(Explain, SaysHowEveryImplicitMethodWouldSolveItsLinearSystemsAndWhatEachWayCosts) {
   std::set<std::string> chosen;
   for (const std::string scene : {"corners-free", "corners-free --set springs.structural=1",

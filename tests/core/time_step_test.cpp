@@ -1,5 +1,6 @@
 #include "simulation/time_step.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -137,6 +138,37 @@ TEST(ADurationThatIsNoWholeNumberOfSteps, IsSaid) {
             "duration = 0.105 s is no whole number of steps of 0.01 s: it takes 11 steps, 0.11 s");
   EXPECT_EQ(uneven_duration_text(0.001, 0.01),
             "duration = 0.001 s is no whole number of steps of 0.01 s: it takes 1 step, 0.01 s");
+}
+
+TEST(AStepOfTheSceneThatIsNotStable, IsSaidWithTheLimitOfItsMethod) {
+  Scene scene = builtin_scene("flag");
+  scene.cloth.rows = scene.cloth.columns = 129;
+  scene.integrator = {"verlet", 0.0002};
+  const double limit = stable_step("verlet", scene).value();
+  ASSERT_LT(limit, 0.0002);
+  EXPECT_EQ(too_long_step_text(scene),
+            fmt::format("integrator.time_step = 0.0002 s is beyond the {:.6g} s at "
+                        "which verlet is stable for this scene",
+                        limit));
+  scene.integrator.time_step = limit;
+  EXPECT_NE(too_long_step_text(scene), "");
+  scene.integrator.time_step = 0.999 * limit;
+  EXPECT_EQ(too_long_step_text(scene), "");
+  scene.integrator.time_step.reset();
+  EXPECT_EQ(too_long_step_text(scene), "");
+  scene.integrator = {"implicit-euler", 10.0};
+  EXPECT_EQ(too_long_step_text(scene), "");
+  Scene undamped = builtin_scene("corners-free");
+  undamped.springs->damping = 0, undamped.damping = 0;
+  undamped.integrator = {"explicit-euler", 1e-6};
+  EXPECT_EQ(too_long_step_text(undamped),
+            "integrator.time_step = 1e-06 s: explicit-euler is stable at no step for this scene");
+}
+
+/// What a scene says of itself is what it can keep.
+TEST(AStepOfTheSceneThatIsNotStable, IsThatOfNoBuiltInScene) {
+  for (const BuiltinScene& builtin : builtin_scenes())
+    EXPECT_EQ(too_long_step_text(builtin_scene(builtin.name)), "") << builtin.name;
 }
 
 TEST(StepsPerRow, IsTheIntervalInWholeStepsAndAtLeastOne) {

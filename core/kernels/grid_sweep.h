@@ -70,7 +70,7 @@ class GridSweep : public SpringSweep {
     const SweepLoads& loads;
     double step = 0;  ///< s
     bool drift_first = false;
-    VelocityUpdate update;             ///< of predicted Verlet
+    VelocityUpdate update{};           ///< of predicted Verlet
     std::array<Attached, 3> fields{};  ///< entries without `values` are unused
     int sums = kernels::step_sums;
     int scratch_rows = kernels::step_scratch_rows;

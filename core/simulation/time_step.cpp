@@ -63,7 +63,7 @@ std::string too_long_step_text(const Scene& scene) {
     return fmt::format("integrator.time_step = {:.6g} s: {} is stable at no step for this scene", step,
                        method);
   return fmt::format(
-      "integrator.time_step = {:.6g} s is beyond the {:.6g} s at which {} is stable for this scene", step,
+      "integrator.time_step = {:.6g} s is beyond the {:.6g} s up to which {} is stable for this scene", step,
       limit, method);
 }
 

@@ -147,7 +147,7 @@ TEST(AStepOfTheSceneThatIsNotStable, IsSaidWithTheLimitOfItsMethod) {
   const double limit = stable_step("verlet", scene).value();
   ASSERT_LT(limit, 0.0002);
   EXPECT_EQ(too_long_step_text(scene),
-            fmt::format("integrator.time_step = 0.0002 s is beyond the {:.6g} s at "
+            fmt::format("integrator.time_step = 0.0002 s is beyond the {:.6g} s up to "
                         "which verlet is stable for this scene",
                         limit));
   scene.integrator.time_step = limit;

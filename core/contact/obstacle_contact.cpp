@@ -72,6 +72,10 @@ bool is_near(double nearest) {
   return nearest <= 0;
 }
 
+void set(double (&to)[3], const Vec3& v) {
+  to[0] = v.x(), to[1] = v.y(), to[2] = v.z();
+}
+
 std::vector<double> nearest_of(const std::vector<Obstacle>& obstacles, const Vec3Field& position) {
   std::vector<double> nearest(position.size(), infinity);
   for (const Obstacle& obstacle : obstacles) add_nearest(obstacle, position, nearest);
@@ -89,6 +93,27 @@ bool any_inside(const Obstacle& obstacle, const ClothSystem& system, const Vec3F
 
 static bool reflects(const Obstacle& obstacle) {
   return obstacle.response == "reflect";
+}
+
+std::optional<TouchSolid> solid_of(const Obstacle& obstacle) {
+  TouchSolid solid;
+  switch (shape_of(obstacle).body) {
+    case BodyKind::half_space:
+      solid.kind = TouchSolid::Kind::half_space;
+      set(solid.center, obstacle.point), set(solid.normal, obstacle.normal.normalized());
+      return solid;
+    case BodyKind::ball:
+      solid.kind = TouchSolid::Kind::ball;
+      set(solid.center, obstacle.center), solid.radius = obstacle.radius;
+      return solid;
+    case BodyKind::box:
+      solid.kind = TouchSolid::Kind::box;
+      set(solid.center, obstacle.center), set(solid.half, 0.5 * obstacle.size);
+      return solid;
+    case BodyKind::surface:
+      break;
+  }
+  return std::nullopt;
 }
 
 Obstacle grown(Obstacle obstacle, double length) {
@@ -135,7 +160,12 @@ std::string describe(const TunnellingRisk& risk) {
 }
 
 ObstacleContact::ObstacleContact(std::vector<Obstacle> obstacles, double gravity)
-    : obstacles_(std::move(obstacles)), gravity_(gravity) {}
+    : obstacles_(std::move(obstacles)), gravity_(gravity) {
+  for (const Obstacle& obstacle : obstacles_) {
+    solids_.push_back(solid_of(obstacle));
+    rebounds_ = rebounds_ || obstacle.restitution > 0;
+  }
+}
 
 ContactReport ObstacleContact::apply(const ClothSystem& system, const ContactBegin& begin,
                                      ClothState& state) const {
@@ -167,22 +197,29 @@ ContactReport ObstacleContact::apply(const ClothSystem& system, const ContactBeg
 /// One obstacle after the other.
 void ObstacleContact::respond(const ClothSystem& system, const ContactBegin& begin, const Piece& piece,
                               TouchBlock& block, ClothState& state, ContactReport& report) const {
+  const TouchKernels& kernels = active_kernels<TouchKernels>();
   const auto& [first, count, nearest, held] = piece;
   std::fill_n(block.mass, TouchBlock::size, 1.0);
   std::copy_n(system.mass.data() + first, count, block.mass);
-  std::copy_n(begin.memory.held.data() + first, count, block.held);
-  copy(begin.position, first, count, block.start), copy(begin.velocity, first, count, block.start_velocity);
-  copy(begin.velocity, first, count, block.before);
-  copy(state.position, first, count, block.integrated_position);
-  copy(state.velocity, first, count, block.integrated_velocity);
+  std::fill_n(block.is_free, TouchBlock::size, 0.0);
+  for (std::size_t k = 0; k < count; ++k) block.is_free[k] = system.pinned[first + k] ? 0 : 1;
+  copy(begin.position, first, count, block.start), copy(begin.velocity, first, count, block.before);
+  if (rebounds_) {  // what a rebound alone asks for
+    std::copy_n(begin.memory.held.data() + first, count, block.held);
+    copy(begin.velocity, first, count, block.start_velocity);
+    copy(state.position, first, count, block.integrated_position);
+    copy(state.velocity, first, count, block.integrated_velocity);
+  }
   copy(state.position, first, count, block.position), copy(state.velocity, first, count, block.velocity);
   std::fill_n(block.work, TouchBlock::size, 0.0), std::fill_n(block.outcome, TouchBlock::size, 0.0);
   if (begin.constrained) move_to_constrained(system, *begin.constrained, piece, block);
   for (std::size_t k = 0; k < obstacles_.size(); ++k) {
     const Obstacle& obstacle = obstacles_[k];
-    const int touched = begin.constrained ? find_held(k, piece, block) : find_inside(k, system, piece, block);
+    if (!begin.constrained && !solids_[k]) continue;
+    const int touched =
+        begin.constrained ? find_held(k, piece, block) : kernels.find_touched(*solids_[k], block);
     if (touched == 0) continue;
-    active_kernels<TouchKernels>().respond(
+    kernels.respond(
         {obstacle.friction, obstacle.restitution, reflects(obstacle), begin.step, gravity_ * begin.step},
         block);
     report.contacts += touched;
@@ -194,22 +231,7 @@ void ObstacleContact::respond(const ClothSystem& system, const ContactBegin& beg
   }
 }
 
-/// The particles inside an obstacle, with its surface there; returns their number.
-int ObstacleContact::find_inside(std::size_t obstacle, const ClothSystem& system, const Piece& piece,
-                                 TouchBlock& block) const {
-  int number = 0;
-  std::fill_n(block.touched, TouchBlock::size, 0.0), std::fill_n(block.normal_load, TouchBlock::size, 0.0);
-  for (std::size_t k = 0; k < piece.count; ++k) {
-    if (!is_near(piece.nearest[k]) || system.pinned[piece.first + k]) continue;
-    const auto surface = penetration(obstacles_[obstacle], get(block.position, k));
-    if (!surface) continue;
-    block.touched[k] = 1, ++number;
-    set(block.point, k, surface->point), set(block.normal, k, surface->normal);
-  }
-  return number;
-}
-
-/// The same of a step that was solved with contact.
+/// The particles that touch an obstacle after a step that was solved with contact; returns their number.
 int ObstacleContact::find_held(std::size_t obstacle, const Piece& piece, TouchBlock& block) {
   int number = 0;
   std::fill_n(block.touched, TouchBlock::size, 0.0);

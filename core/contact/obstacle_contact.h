@@ -23,6 +23,9 @@ Vec3 contact_velocity(const Obstacle& obstacle, const Vec3& normal, const Vec3& 
 /// The obstacle with its surface moved outward by `length` (m).
 Obstacle grown(Obstacle obstacle, double length);
 
+/// nullopt: BodyKind::surface, which has no inside.
+std::optional<TouchSolid> solid_of(const Obstacle& obstacle);
+
 /// A particle on an obstacle's surface.
 struct HeldParticle {
   std::size_t particle = 0, obstacle = 0;
@@ -90,14 +93,14 @@ class ObstacleContact {
   };
   void respond(const ClothSystem& system, const ContactBegin& begin, const Piece& piece, TouchBlock& block,
                ClothState& state, ContactReport& report) const;
-  int find_inside(std::size_t obstacle, const ClothSystem& system, const Piece& piece,
-                  TouchBlock& block) const;
   static int find_held(std::size_t obstacle, const Piece& piece, TouchBlock& block);
   static void move_to_constrained(const ClothSystem& system, const ConstrainedStep& constrained,
                                   const Piece& piece, TouchBlock& block);
 
   std::vector<Obstacle> obstacles_;
-  double gravity_ = 0;  ///< m/s^2
+  std::vector<std::optional<TouchSolid>> solids_;  ///< of each obstacle; nullopt: it has no inside
+  bool rebounds_ = false;                          ///< an obstacle has restitution
+  double gravity_ = 0;                             ///< m/s^2
 };
 
 }  // namespace cloth

@@ -30,6 +30,84 @@ CLOTHLAB_INLINE void set(TouchBlock::Vectors& to, int k, const Vector& v) {
   to[0][k] = v.x, to[1][k] = v.y, to[2][k] = v.z;
 }
 
+CLOTHLAB_INLINE Vector vector_of(const double (&of)[3]) {
+  return {of[0], of[1], of[2]};
+}
+
+/// The nearest point of the surface; whether the particle is inside.
+struct NearestPoint {
+  Vector point, normal;
+  bool is_inside;
+};
+
+struct HalfSpace {
+  Vector point, normal;
+
+  CLOTHLAB_INLINE NearestPoint nearest_to(const Vector& at) const {
+    const double height = dot(normal, at - point);
+    return {at - height * normal, normal, height < 0};
+  }
+};
+
+/// The centre itself is equally far from every point of the surface: up, as in penetration().
+struct Ball {
+  Vector center;
+  double radius;
+
+  CLOTHLAB_INLINE NearestPoint nearest_to(const Vector& at) const {
+    const Vector out = at - center;
+    const double squared = dot(out, out), distance = __builtin_sqrt(squared);
+    const bool has_side = squared > 0;
+    const double x = has_side ? out.x / distance : 0, y = has_side ? out.y / distance : 1,
+                 z = has_side ? out.z / distance : 0;
+    return {{center.x + radius * x, center.y + radius * y, center.z + radius * z},
+            {x, y, z},
+            squared < radius * radius};
+  }
+};
+
+/// On the face of least depth, of equal ones the first.
+struct Box {
+  Vector center, half;
+
+  CLOTHLAB_INLINE NearestPoint nearest_to(const Vector& at) const {
+    const Vector in = at - center;
+    const Vector side = {in.x < 0 ? -1.0 : 1.0, in.y < 0 ? -1.0 : 1.0, in.z < 0 ? -1.0 : 1.0};
+    const Vector depth = {half.x - side.x * in.x, half.y - side.y * in.y, half.z - side.z * in.z};
+    const double least_depth = least(depth.x, least(depth.y, depth.z));
+    const bool by_x = depth.x == least_depth, by_y = !by_x & (depth.y == least_depth), by_z = !by_x & !by_y;
+    const Vector face = {center.x + side.x * half.x, center.y + side.y * half.y, center.z + side.z * half.z};
+    return {{by_x ? face.x : at.x, by_y ? face.y : at.y, by_z ? face.z : at.z},
+            {by_x ? side.x : 0, by_y ? side.y : 0, by_z ? side.z : 0},
+            least_depth > 0};
+  }
+};
+
+template <class Solid>
+int find_inside(const Solid solid, TouchBlock& block) {
+  double number = 0;
+  for (int k = 0; k < size; ++k) {
+    const NearestPoint nearest = solid.nearest_to(get(block.position, k));
+    const double touched = nearest.is_inside & (block.is_free[k] != 0) ? 1 : 0;
+    block.touched[k] = touched, number += touched;
+    set(block.point, k, nearest.point), set(block.normal, k, nearest.normal);
+  }
+  return static_cast<int>(number);
+}
+
+int find_touched(const TouchSolid& solid, TouchBlock& block) {
+  const Vector center = vector_of(solid.center);
+  switch (solid.kind) {
+    case TouchSolid::Kind::half_space:
+      return find_inside(HalfSpace{center, vector_of(solid.normal)}, block);
+    case TouchSolid::Kind::ball:
+      return find_inside(Ball{center, solid.radius}, block);
+    case TouchSolid::Kind::box:
+      return find_inside(Box{center, vector_of(solid.half)}, block);
+  }
+  return 0;
+}
+
 /// m/s, the approach speed to which restitution applies. A particle without contact in the last step: its
 /// mean speed in this step. One with contact: its speed at the beginning of the step, because what the step
 /// adds is load. 0 below twice what gravity or the load adds in a step, or a cloth at rest would keep
@@ -129,7 +207,7 @@ void respond(const TouchLaw& law, TouchBlock& block) {
     respond_by<false, false>(law, block);
 }
 
-constexpr TouchKernels table{respond};
+constexpr TouchKernels table{find_touched, respond};
 
 }  // namespace
 

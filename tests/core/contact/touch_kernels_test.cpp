@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "contact/contact_work.h"
+#include "contact/obstacle_contact.h"
 #include "kernels/instruction_set.h"
 #include "support/random.h"
 
@@ -119,6 +120,44 @@ TEST_P(TouchOfEverySet, OfManyParticlesIsThatOfEach) {
     }
   EXPECT_GT(rebounds, 100);
   EXPECT_GT(others, 500);
+}
+
+Obstacle obstacle_of(const ObstacleShape& shape, Random& random) {
+  Obstacle obstacle;
+  obstacle.shape = &shape;
+  obstacle.point = obstacle.center = random.vector(0.5);
+  obstacle.normal = random.vector(1), obstacle.radius = random.uniform(0.2, 0.9);
+  obstacle.size = 2 * random.vector(0.9).cwiseAbs();
+  return obstacle;
+}
+
+TEST_P(TouchOfEverySet, FindsTheFreeParticlesInsideWithTheNearestPointOfTheSurface) {
+  Random random;
+  int inside = 0, outside = 0;
+  for (int round = 0; round < 60; ++round) {
+    const ObstacleShape* const shapes[] = {&plane_shape(), &sphere_shape(), &box_shape()};
+    const Obstacle obstacle = obstacle_of(*shapes[round % 3], random);
+    TouchBlock block{};
+    for (std::size_t k = 0; k < TouchBlock::size; ++k)
+      set(block.position, k, random.vector(1)), block.is_free[k] = k % 5 != 0;
+    set(block.position, 1, obstacle.center);
+    const int number = active_kernels<TouchKernels>().find_touched(*solid_of(obstacle), block);
+    int touched = 0;
+    for (std::size_t k = 0; k < TouchBlock::size; ++k) {
+      const auto surface = penetration(obstacle, get(block.position, k));
+      EXPECT_EQ(block.touched[k] != 0, surface && k % 5 != 0) << obstacle.shape->name << ' ' << k;
+      if (block.touched[k] == 0) {
+        ++outside;
+        continue;
+      }
+      ++inside, ++touched;
+      EXPECT_LE((get(block.point, k) - surface->point).norm(), 1e-15) << obstacle.shape->name << ' ' << k;
+      EXPECT_LE((get(block.normal, k) - surface->normal).norm(), 1e-15) << obstacle.shape->name << ' ' << k;
+    }
+    EXPECT_EQ(number, touched);
+  }
+  EXPECT_GT(inside, 200);
+  EXPECT_GT(outside, 200);
 }
 
 }  // namespace

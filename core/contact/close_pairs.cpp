@@ -83,27 +83,22 @@ ClosePairs::Role ClosePairs::role_of(const FeaturePair& pair, const Separation& 
 
 /// Of the part's pairs, those that act remain.
 void ClosePairs::separate_part(const PairQuery& now, Part& part) const {
-  std::vector<FeaturePair>& pairs = part.pairs;
-  if (part.every.size() < pairs.size()) part.every.resize(pairs.size());
-  part.needs.resize(pairs.size());
-  part.separations.clear(), part.waiting.clear();
+  part.acting.clear(), part.separations.clear(), part.waiting.clear();
   const PairSetting setting{cloth_, now.position, bodies_, now.poses, now.placed};
-  PairBatch(setting).separate(pairs, {near_factor * now.swept.reach, near_factor * now.swept.own_reach},
-                              {part.motion, {now.swept.reach, now.swept.own_reach}}, part.every.data(),
-                              part.needs.data());
-  std::size_t kept = 0;
-  for (std::size_t k = 0; k < pairs.size(); ++k) {
-    if (part.needs[k] == PairNeed::apart) continue;
-    const FeaturePair pair = pairs[k];
-    const Role role = part.needs[k] == PairNeed::waits
-                          ? Role::waits
-                          : role_of(pair, part.every[k], part.motion[k], now.swept);
-    if (role == Role::waits) part.waiting.push_back({pair, kept});
-    if (role != Role::acts) continue;
-    pairs[kept++] = pair;
-    part.separations.push_back(part.every[k]);
-  }
-  pairs.resize(kept);
+  PairBatch(setting).separate(part.pairs, {near_factor * now.swept.reach, near_factor * now.swept.own_reach},
+                              {part.motion, {now.swept.reach, now.swept.own_reach}},
+                              [&](std::size_t k, PairNeed need, const Separation& separation) {
+                                if (need == PairNeed::apart) return;
+                                const FeaturePair& pair = part.pairs[k];
+                                const Role role = need == PairNeed::waits
+                                                      ? Role::waits
+                                                      : role_of(pair, separation, part.motion[k], now.swept);
+                                if (role == Role::waits) part.waiting.push_back({pair, part.acting.size()});
+                                if (role != Role::acts) return;
+                                part.acting.push_back(pair);
+                                part.separations.push_back(separation);
+                              });
+  part.pairs.swap(part.acting);
 }
 
 /// Of the candidates, with the sides of each, those that are not beyond(k). The result is that of the first

@@ -59,11 +59,10 @@ class ClosePairs {
     std::vector<FeaturePair> pairs;
     std::vector<WaitingPair> waiting;
     std::vector<Separation> separations;
-    // scratch, of each pair before those that do not act are dropped
-    std::vector<Separation> every;    ///< may be longer
-    std::vector<double> motion;       ///< m, see motion_of()
+    // scratch
+    std::vector<FeaturePair> acting;
+    std::vector<double> motion;  ///< m, see motion_of(), of each pair before those not acting are dropped
     std::vector<std::size_t> chosen;  ///< of the candidates; may be longer
-    std::vector<PairNeed> needs;
   };
   enum class Role { none, waits, acts };
 

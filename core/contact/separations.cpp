@@ -68,7 +68,8 @@ void PairBatch::finish_triangles(const Take& take) {
 }
 
 /// take(k, points, closest) for pairs that have closest points by vectors, where points() gives those of
-/// their features, and alone(k) for the others: by runs of pairs of one kind with one obstacle.
+/// their features, and alone(k) for the others: in their order, by runs of pairs of one kind with one
+/// obstacle.
 template <class Take, class Alone>
 void PairBatch::go_through(std::span<const FeaturePair> pairs, const Take& take, const Alone& alone) {
   for (std::size_t begin = 0, end = 0; begin < pairs.size(); begin = end) {
@@ -89,9 +90,9 @@ void PairBatch::go_through(std::span<const FeaturePair> pairs, const Take& take,
         }
       }
     });
+    if (segments_.count > 0) finish_segments(take);
+    if (triangles_.count > 0) finish_triangles(take);
   }
-  if (segments_.count > 0) finish_segments(take);
-  if (triangles_.count > 0) finish_triangles(take);
 }
 
 void PairBatch::find_distances(std::span<const FeaturePair> pairs, double* distances) {
@@ -115,18 +116,20 @@ PairNeed PairBatch::need_of(const FeaturePair& pair, const Closest& closest, dou
     return is_in_charge(pair, closest, setting_) ? PairNeed::separation : PairNeed::waits;
 }
 
-void PairBatch::separate(std::span<const FeaturePair> pairs, const NearDistances& within,
-                         const PairMotion& motion, Separation* separations, PairNeed* needs) {
+void PairBatch::separate_each(std::span<const FeaturePair> pairs, const NearDistances& within,
+                              const PairMotion& motion, Taker taker, const void* context) {
+  static const Separation none;
   go_through(
       pairs,
       [&](std::size_t k, const auto& points, const auto& closest) {
-        needs[k] = need_of(pairs[k], closest, motion.reach(pairs[k]), motion.most[k]);
-        if (needs[k] == PairNeed::separation)
-          separations[k] = separation_of(pairs[k], points(), closest, setting_, within(pairs[k]));
+        const PairNeed need = need_of(pairs[k], closest, motion.reach(pairs[k]), motion.most[k]);
+        if (need == PairNeed::separation)
+          taker(context, k, need, separation_of(pairs[k], points(), closest, setting_, within(pairs[k])));
+        else
+          taker(context, k, need, none);
       },
       [&](std::size_t k) {
-        needs[k] = PairNeed::separation;
-        separations[k] = cloth::separate(pairs[k], setting_, within(pairs[k]));
+        taker(context, k, PairNeed::separation, cloth::separate(pairs[k], setting_, within(pairs[k])));
       });
 }
 

@@ -40,9 +40,18 @@ class PairBatch {
   /// One for each pair. Those nearer than `within` are asked whether they are nearest, see separate().
   void separate(std::span<const FeaturePair> pairs, const NearDistances& within, Separation* separations);
 
-  /// The same for those that need it, as needs[k] says then.
+  /// Calls take(k, need, separation) for each pair in turn, with the separation of those that need it: most
+  /// are not kept, and together they are more than a processor has at hand.
+  template <class Take>
   void separate(std::span<const FeaturePair> pairs, const NearDistances& within, const PairMotion& motion,
-                Separation* separations, PairNeed* needs);
+                const Take& take) {
+    separate_each(
+        pairs, within, motion,
+        [](const void* context, std::size_t k, PairNeed need, const Separation& separation) {
+          (*static_cast<const Take*>(context))(k, need, separation);
+        },
+        &take);
+  }
 
  private:
   struct Waiting {
@@ -51,6 +60,9 @@ class PairBatch {
     int count = 0;
   };
 
+  using Taker = void (*)(const void* context, std::size_t k, PairNeed need, const Separation& separation);
+  void separate_each(std::span<const FeaturePair> pairs, const NearDistances& within,
+                     const PairMotion& motion, Taker taker, const void* context);
   template <class Closest>
   PairNeed need_of(const FeaturePair& pair, const Closest& closest, double reach, double most) const;
   template <class Take, class Alone>

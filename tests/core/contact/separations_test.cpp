@@ -89,7 +89,13 @@ TEST_F(EveryInstructionSet, LeavesOutOnlyPairsThatCannotComeNearOrAreNotNearest)
     for (std::size_t k = 0; k < pairs.size(); ++k) motion.push_back(random.uniform(0, 0.25));
     std::vector<Separation> all(pairs.size());
     std::vector<PairNeed> needs(pairs.size());
-    PairBatch(setting).separate(pairs, within, {motion, reach}, all.data(), needs.data());
+    std::size_t next = 0;
+    PairBatch(setting).separate(pairs, within, {motion, reach},
+                                [&](std::size_t k, PairNeed need, const Separation& separation) {
+                                  EXPECT_EQ(k, next++);
+                                  needs[k] = need, all[k] = separation;
+                                });
+    EXPECT_EQ(next, pairs.size());
     for (std::size_t k = 0; k < pairs.size(); ++k) {
       SCOPED_TRACE(testing::Message() << "pair " << k << " of kind " << static_cast<int>(pairs[k].kind));
       const Separation alone = separate(pairs[k], setting, within(pairs[k]));

@@ -117,7 +117,7 @@ TEST(Jacobian, OfAirWithWindAndBrushIsItsForcesSlope) {
 TEST(Jacobian, OfAirAlongHeldNormalsIsItsForcesSlope) {
   Random random;
   Scene scene = pinned_sheet();
-  scene.air = Air{.drag = 0.4, .skin_friction = 0.1, .wind = {1, -0.5, 3}};
+  scene.air = Air{.drag = 0.4, .skin_friction = 0.1, .wind = {1, -0.5, 3}, .gust = {}};
   DirectRun run(scene, "verlet");
   run.state = crumpled_state(run.system, 0.03, 0.8, random);
   run.forces.update(run.state.position, 0);

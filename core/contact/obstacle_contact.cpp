@@ -175,16 +175,15 @@ ContactReport ObstacleContact::apply(const ClothSystem& system, const ContactBeg
   std::span<const HeldParticle> held;
   if (begin.constrained) held = begin.constrained->held;
   const std::vector<double> nearest =
-      begin.constrained ? std::vector<double>(particles, 0.0) : nearest_of(obstacles_, state.position);
+      begin.constrained ? std::vector<double>() : nearest_of(obstacles_, state.position);
   TouchBlock block{};
   for (std::size_t first = 0; first < particles; first += TouchBlock::size) {
-    Piece piece{first, std::min<std::size_t>(TouchBlock::size, particles - first), {}, {}};
-    piece.nearest = std::span(nearest).subspan(first, piece.count);
+    Piece piece{first, std::min<std::size_t>(TouchBlock::size, particles - first), {}};
     const auto after = std::find_if(held.begin(), held.end(),
                                     [&](const HeldParticle& h) { return h.particle >= first + piece.count; });
     piece.held = held.first(static_cast<std::size_t>(after - held.begin()));
     held = held.subspan(piece.held.size());
-    if (std::any_of(piece.nearest.begin(), piece.nearest.end(), is_near))
+    if (begin.constrained || std::ranges::any_of(std::span(nearest).subspan(first, piece.count), is_near))
       respond(system, begin, piece, block, state, report);
     else
       std::fill_n(begin.memory.held.begin() + static_cast<std::ptrdiff_t>(first), piece.count,
@@ -198,7 +197,7 @@ ContactReport ObstacleContact::apply(const ClothSystem& system, const ContactBeg
 void ObstacleContact::respond(const ClothSystem& system, const ContactBegin& begin, const Piece& piece,
                               TouchBlock& block, ClothState& state, ContactReport& report) const {
   const TouchKernels& kernels = active_kernels<TouchKernels>();
-  const auto& [first, count, nearest, held] = piece;
+  const auto& [first, count, held] = piece;
   std::fill_n(block.mass, TouchBlock::size, 1.0);
   std::copy_n(system.mass.data() + first, count, block.mass);
   std::fill_n(block.is_free, TouchBlock::size, 0.0);
@@ -215,9 +214,9 @@ void ObstacleContact::respond(const ClothSystem& system, const ContactBegin& beg
   if (begin.constrained) move_to_constrained(system, *begin.constrained, piece, block);
   for (std::size_t k = 0; k < obstacles_.size(); ++k) {
     const Obstacle& obstacle = obstacles_[k];
-    if (!begin.constrained && !solids_[k]) continue;
-    const int touched =
-        begin.constrained ? find_held(k, piece, block) : kernels.find_touched(*solids_[k], block);
+    const int touched = begin.constrained ? find_held(k, piece, block)
+                        : solids_[k]      ? kernels.find_touched(*solids_[k], block)
+                                          : 0;
     if (touched == 0) continue;
     kernels.respond(
         {obstacle.friction, obstacle.restitution, reflects(obstacle), begin.step, gravity_ * begin.step},

@@ -88,7 +88,6 @@ class ObstacleContact {
   /// Some particles that follow each other, as many as a TouchBlock has.
   struct Piece {
     std::size_t first = 0, count = 0;
-    std::span<const double> nearest;     ///< of each, see nearest_of()
     std::span<const HeldParticle> held;  ///< the surfaces that they lie on, in order of the particles
   };
   void respond(const ClothSystem& system, const ContactBegin& begin, const Piece& piece, TouchBlock& block,

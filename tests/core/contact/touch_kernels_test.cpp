@@ -158,6 +158,7 @@ TEST_P(TouchOfEverySet, FindsTheFreeParticlesInsideWithTheNearestPointOfTheSurfa
   }
   EXPECT_GT(inside, 200);
   EXPECT_GT(outside, 200);
+  EXPECT_FALSE(solid_of(obstacle_of(mesh_shape(), random))) << "a surface has no inside";
 }
 
 }  // namespace

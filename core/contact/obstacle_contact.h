@@ -17,7 +17,9 @@ namespace cloth {
 
 /// The velocity (m/s) after contact; unchanged if it does not point inward. With v_n its component along the
 /// outward normal n: response "coulomb" replaces v_n by -restitution v_n and reduces the tangential part by
-/// up to friction |change of v_n|; "reflect" gives friction (v - 2 v_n n) (report, Eq. (17)).
+/// up to friction |change of v_n|; "reflect" gives friction (v - 2 v_n n) (report, Eq. (17)). Either way the
+/// change beyond v_n = 0 is as much as returns no more energy than the contact takes: under a load that acts
+/// during a step Eq. (17) would throw a particle at rest back in every step.
 Vec3 contact_velocity(const Obstacle& obstacle, const Vec3& normal, const Vec3& velocity);
 
 /// The obstacle with its surface moved outward by `length` (m).

@@ -174,7 +174,7 @@ void respond_by(const TouchLaw law, TouchBlock& block) {
                  before = get(block.before, k);
     const double mass = block.mass[k], inward = dot(velocity, normal), load = block.normal_load[k] / mass;
     const bool moves_in = inward < 0;
-    const Vector still = reflects ? law.friction * (velocity - (2 * inward) * normal)
+    const Vector still = reflects ? law.friction * (velocity - inward * normal)
                                   : answer_of(law, velocity, normal, inward, 0, load);
     const Vector stopped = choose(moves_in, still, velocity);
     const Vector gone = (1 / law.step) * (get(block.point, k) - get(block.start, k));
@@ -182,9 +182,11 @@ void respond_by(const TouchLaw law, TouchBlock& block) {
         stopping_work(mass, block.normal_load[k], normal, stopped - velocity, before, stopped, gone);
     Vector answer = stopped;
     double outcome = 1;
-    if (rebounds) {
-      const double approach = approach_of(law, block, k, normal);
-      const Vector bounced = answer_of(law, velocity, normal, inward, law.restitution * approach, load);
+    if (reflects || rebounds) {
+      const double approach = reflects ? -inward : approach_of(law, block, k, normal);
+      const Vector bounced = reflects
+                                 ? still + (law.friction * approach) * normal
+                                 : answer_of(law, velocity, normal, inward, law.restitution * approach, load);
       answer = choose(moves_in, choose(approach > 0, bounced, stopped), stopped);
       work = limit_rebound(mass, work, stopped, answer);
       const Vector change = answer - stopped;

@@ -12,12 +12,14 @@ namespace {
 Fields<Obstacle> with_response(Fields<Obstacle> fields) {
   using O = Obstacle;
   fields.push_back(
-      field(&O::response, {.key = "response",
-                           .label = "Response",
-                           .doc = "Coulomb: friction and restitution. Reflect: the report's Eq. (17).",
-                           .formula = "coulomb: v_n -> -e v_n, v_t loses up to friction |change of v_n|; "
-                                      "reflect: v -> f (v - 2 v_n n)",
-                           .choices = {"coulomb", "reflect"}}));
+      field(&O::response,
+            {.key = "response",
+             .label = "Response",
+             .doc = "Coulomb: friction and restitution. Reflect: the report's Eq. (17), which returns no "
+                    "more energy than the contact takes.",
+             .formula = "coulomb: v_n -> -e v_n, v_t loses up to friction |change of v_n|; "
+                        "reflect: v -> f (v - 2 v_n n)",
+             .choices = {"coulomb", "reflect"}}));
   fields.push_back(
       field(&O::friction, {.key = "friction",
                            .label = "Friction",

@@ -30,7 +30,7 @@ struct Answer {
 Vec3 after_contact(const TouchLaw& law, const Vec3& v, const Vec3& n, double approach, double load) {
   const double inward = v.dot(n);
   if (!(inward < 0)) return v;
-  if (law.reflects) return law.friction * (v - 2 * inward * n);
+  if (law.reflects) return law.friction * (v - inward * n + approach * n);
   const Vec3 along = v - inward * n;
   const double rebound = law.restitution * approach, lost = law.friction * (rebound - inward + load);
   return std::max(0.0, 1 - lost / along.norm()) * along + rebound * n;
@@ -41,9 +41,9 @@ Answer answer_of(const TouchLaw& law, const TouchBlock& block, std::size_t k) {
   const Vec3 began = get(block.start_velocity, k);
   const double mass = block.mass[k], load = block.normal_load[k] / mass;
   const Vec3 moved = (get(block.integrated_position, k) - start) / law.step;
-  double approach = -n.dot(block.held[k] != 0 ? began : moved);
+  double approach = law.reflects ? -v.dot(n) : -n.dot(block.held[k] != 0 ? began : moved);
   const double added = n.dot(began - get(block.integrated_velocity, k));
-  if (!(approach > 2 * std::max(law.gravity_speed, added))) approach = 0;
+  if (!law.reflects && !(approach > 2 * std::max(law.gravity_speed, added))) approach = 0;
 
   const Vec3 stopped = after_contact(law, v, n, 0, load), change = stopped - v;
   ContactConstraint contact;

@@ -8,9 +8,9 @@ namespace {
 constexpr VelocityUpdate once[] = {{1, 1}}, twice[] = {{1, 0}, {1, 1}},
                          three_times[] = {{0.5, 0}, {1, 0.5}, {1, 1}};
 
-/// Of the velocities from which those after contact follow by one more evaluation of the damping
-/// (update_velocity_for_damping()): what contact changes there is larger by orders.
-constexpr double tolerance_before_contact = 1e-5;
+/// Of the velocities from which those after contact follow (update_velocity_for_damping()), and of those at
+/// which it is damped: what contact changes there is larger by orders.
+constexpr double tolerance_of_contact = 1e-5;
 
 }  // namespace
 
@@ -63,7 +63,9 @@ IntegratorReport Verlet::open_step(ForceModel& forces, const StepTimes& times, C
   if (!holds_position_force_ && (!keeps || corrects || !holds_force_))
     forces.update(state.position, times.begin);
   if (keeps ? !holds_force_ : !holds_position_force_) ++report.force_evaluations;
+  const bool as_closed = holds_force_ && holds_position_force_ && !holds_damped_;
   if (!holds_force_) evaluate(forces, state);
+  open_kicks(forces, h, as_closed, state);
   work += 0.5 * h * power_;
   if (constraint_) constraint_->before_kick(0.5 * h, h, state);
   add_acceleration(forces.system(), 0.5 * h, force(forces), state.velocity);
@@ -71,8 +73,8 @@ IntegratorReport Verlet::open_step(ForceModel& forces, const StepTimes& times, C
   if (keeps && end_ == EndVelocity::predicted)
     add_acceleration(forces.system(), 0.5 * h, force_, state.velocity);
   if (constraint_) constraint_->after_drift(0.5 * h, state);
-  if (corrects) correct_opening(forces, 0.5 * h, work);
-  holds_position_force_ = led_by_contact_ = false;
+  if (corrects && !kicks_.is_known()) correct_opening(forces, 0.5 * h, work);
+  holds_position_force_ = led_by_contact_ = holds_damped_ = false;
   is_open_ = true;
   return report;
 }
@@ -80,6 +82,8 @@ IntegratorReport Verlet::open_step(ForceModel& forces, const StepTimes& times, C
 void Verlet::close_step(ForceModel& forces, const StepTimes& times, ClothState& state, Work& work,
                         IntegratorReport& report) {
   const double h = times.step;
+  // The constraint has added its part of the closing kick already.
+  if (kicks_.is_known()) kicks_.drift(state.velocity, constraint_ ? constraint_->closing_change() : nullptr);
   forces.update(state.position, times.end);
   if (keeps_force(forces))
     finish_unsolved(forces, 0.5 * h, state);
@@ -87,9 +91,62 @@ void Verlet::close_step(ForceModel& forces, const StepTimes& times, ClothState& 
     report.velocity_iterations = finish_velocity(forces, 0.5 * h, solved_tolerance, state);
   if (!holds_force_) evaluate(forces, state);
   work += 0.5 * h * power_;
-  work.damping_loss += closing_correction_ = closing_correction(forces, h);
+  close_kicks(forces, state);
+  closing_correction_ =
+      kicks_.is_known() ? -kicks_.beside_trapezoid(forces.system()) : closing_correction(forces, h);
+  work.damping_loss += closing_correction_;
   holds_position_force_ = true;
   is_open_ = false;
+}
+
+/// Only where damping that couples particles is solved for. Otherwise h D is less than twice m, or what
+/// contact stops is not damped, and the powers are near enough.
+void Verlet::open_kicks(const ForceModel& forces, double step, bool as_closed, const ClothState& state) {
+  if (end_ != EndVelocity::solved || !forces.has_damping_loss() || !forces.couples_particles())
+    kicks_.forget();
+  else if (as_closed && kicks_.is_closed())
+    kicks_.open_as_closed(step);
+  else
+    kicks_.open(step, holds_damped_ ? damped_ : state.velocity, force_, forces.position_force());
+}
+
+void Verlet::close_kicks(const ForceModel& forces, const ClothState& state) {
+  if (!kicks_.is_known()) return;
+  kicks_.close(state.velocity, force_, forces.position_force());
+  integrated_ = state.position;
+  closing_power_ = power_;
+}
+
+/// What is to be added where contact has changed the state. `was_led`: contact has had the velocities of
+/// update_velocity_for_damping(), and books what its impulses do beside those kicks.
+Work Verlet::correct_kicks(const ForceModel& forces, double half_step, bool was_open, bool was_led,
+                           const ClothState& state) {
+  const double booked = was_open ? 0 : closing_correction_;
+  Work correction;
+  if (was_led) {
+    correction = half_step * power_;
+    if (!was_open) correction += -half_step * closing_power_;
+    closing_correction_ = -kicks_.beside_trapezoid(forces.system());
+  } else {
+    closing_correction_ =
+        -kicks_.beside_trapezoid(forces.system(), integrated_, state, forces.position_force());
+    damp_change(forces, half_step, kicks_.end_velocity(), state);
+  }
+  correction.damping_loss += closing_correction_ - booked;
+  holds_force_ = holds_damped_ = true;
+  return correction;
+}
+
+/// The damping at the velocity to which the closing kick leads with contact's change of `unchanged` in it.
+void Verlet::damp_change(const ForceModel& forces, double half_step, const Vec3Field& unchanged,
+                         const ClothState& state) {
+  damped_ = kicks_.drift();
+  const SparseField* closing = constraint_ ? constraint_->closing_change() : nullptr;
+  if (closing) add_scaled(1, *closing, damped_);
+  add_scaled(1, state.velocity, damped_);
+  add_scaled(-1, unchanged, damped_);
+  solver_.solve(forces, half_step, tolerance_of_contact, state.position, damped_, force_);
+  power_ = forces.force_and_power(state.position, damped_, force_);
 }
 
 /// From the velocity of the first evaluation.
@@ -163,18 +220,26 @@ int Verlet::finish_velocity(ForceModel& forces, double half_step, double toleran
 int Verlet::update_velocity_for_positions(ForceModel& forces, const StepTimes& times,
                                           const Vec3Field& half_velocity, ClothState& state) {
   state.velocity = half_velocity;
+  if (kicks_.is_known()) kicks_.drift(half_velocity);
   if (constraint_) constraint_->close(state);
   forces.update(state.position, times.end);
   if (forces.has_damping()) forces.force(state.position, state.velocity, force_);
   led_by_contact_ = true;
-  return finish_velocity(forces, 0.5 * times.step, tolerance_before_contact, state);
+  const int iterations = finish_velocity(forces, 0.5 * times.step, tolerance_of_contact, state);
+  if (kicks_.is_known()) free_velocity_ = state.velocity;
+  return iterations;
 }
 
 /// Without it the cloth beside a contact would be damped by the speed that it would have had without contact,
 /// and at rest keep a speed of some h^2 g times damping over mass.
 void Verlet::update_velocity_for_damping(ForceModel& forces, const StepTimes& times,
                                          const Vec3Field& half_velocity, ClothState& state) {
-  if (forces.has_damping()) forces.force(state.position, state.velocity, force_);
+  if (kicks_.is_known()) {
+    damp_change(forces, 0.5 * times.step, free_velocity_, state);
+    kicks_.close(damped_, force_, forces.position_force());
+  } else if (forces.has_damping()) {
+    forces.force(state.position, state.velocity, force_);
+  }
   holds_force_ = false;
   state.velocity = half_velocity;
   if (constraint_) constraint_->close(state);
@@ -183,7 +248,7 @@ void Verlet::update_velocity_for_damping(ForceModel& forces, const StepTimes& ti
 
 /// Its damping stays as it is.
 Vec3Field* Verlet::held_force() {
-  if (end_ != EndVelocity::solved && holds_force_) {
+  if ((end_ != EndVelocity::solved || holds_damped_) && holds_force_) {
     holds_position_force_ = false;
     return &force_;
   }
@@ -192,15 +257,19 @@ Vec3Field* Verlet::held_force() {
 }
 
 IntegratorMemory Verlet::remember() const {
-  if (end_ == EndVelocity::solved || !holds_force_) return {};
-  return {.fields = {force_},
-          .numbers = {power_.damping_loss, power_.hysteresis_loss, power_.air, power_.brush, power_.pull,
-                      closing_correction_}};
+  if (!holds_force_ || (end_ == EndVelocity::solved && !holds_damped_)) return {};
+  IntegratorMemory memory{.fields = {force_},
+                          .numbers = {power_.damping_loss, power_.hysteresis_loss, power_.air, power_.brush,
+                                      power_.pull, closing_correction_}};
+  if (holds_damped_) memory.fields.push_back(damped_);
+  return memory;
 }
 
 void Verlet::recall(const IntegratorMemory& memory) {
   forget(Change::state);
-  if (end_ == EndVelocity::solved || memory.fields.empty()) return;
+  if (memory.fields.empty()) return;
+  holds_damped_ = memory.fields.size() > 1;
+  if (holds_damped_) damped_ = memory.fields[1];
   force_ = memory.fields[0];
   const std::vector<double>& n = memory.numbers;
   power_ = {n[0], n[1], n[2], n[3], n[4]};
@@ -215,6 +284,7 @@ Work Verlet::correct_work(ForceModel& forces, const StepTimes& times, const Clot
   if (!is_updated && forces.has_power()) forces.update(state.position, times.end);
   holds_position_force_ = is_updated || forces.has_power();
   if (!forces.has_power()) return {};
+  if (kicks_.is_closed()) return correct_kicks(forces, 0.5 * times.step, was_open, is_updated, state);
   Work correction;
   if (!was_open) correction = -0.5 * times.step * power_;
   evaluate(forces, state);

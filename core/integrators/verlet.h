@@ -10,7 +10,11 @@
 //
 // solved:    a = a(x, v, t), a' = a(x', v', t+h). The last line is solved for v' (VelocitySolver, with
 //            known = v_half and weight = h/2): closed where no damping couples particles, else by conjugate
-//            gradients. Stable for omega h < 2 at every damping ratio.
+//            gradients. Stable for omega h < 2 at every damping ratio. After contact has changed v' by c, the
+//            next step begins with the damping at v_c, the solution with known = v_half + c, instead of that
+//            at v' + c: of a difference of velocities that contact makes, h D/2m would be turned round, and
+//            what touches would go that many times too far. The work of damping is that of the kicks
+//            (KickWork), since the power of what contact has stopped is no mean of the step's.
 // corrected: a' = a(x', v1, t+h) with v1 = v_half + h/2 a(x', v_half, t+h): two evaluations from the velocity
 //            at half the step; the next step begins with a'. v1 is wrong by O(h^2), v' by O(h^3) a step:
 //            order 2. For m x'' = -K x - D x' with any K and D, in units where m = 1 and h = 1, the velocity
@@ -50,6 +54,7 @@
 #include "forces/velocity_solver.h"
 #include "integrators/end_velocity.h"
 #include "integrators/integrator.h"
+#include "integrators/kick_work.h"
 
 namespace cloth {
 
@@ -73,7 +78,9 @@ class Verlet : public Integrator {
   int update_velocity_for_positions(ForceModel& forces, const StepTimes& times,
                                     const Vec3Field& half_velocity, ClothState& state) override;
   Work correct_work(ForceModel& forces, const StepTimes& times, const ClothState& state) override;
-  void forget(Change) override { holds_position_force_ = holds_force_ = is_open_ = led_by_contact_ = false; }
+  void forget(Change) override {
+    holds_position_force_ = holds_force_ = holds_damped_ = is_open_ = led_by_contact_ = false;
+  }
   Vec3Field* held_force() override;
   /// The velocity at which damping was evaluated is not that of the state: what was computed with it is
   /// remembered.
@@ -94,13 +101,20 @@ class Verlet : public Integrator {
   Work power_;       ///< at the end of the last step
   Vec3Field force_;  ///< p - D v, N; used only where has_damping()
   Vec3Field scratch_;
-  double closing_correction_ = 0;      ///< J, of the constraint's part of the damping loss, last step
+  KickWork kicks_;                     ///< of the last step, where damping is solved for
+  double closing_correction_ = 0;      ///< J, of the damping loss of the last step beside its powers
   bool holds_position_force_ = false;  ///< the force model was last updated at the state
   bool is_open_ = false;               ///< open_step() was the last call
   bool led_by_contact_ = false;  ///< the force model was last updated where contact has led the positions
   bool holds_force_ = false;     ///< `force_` and `power_` are those with which the next step begins
 
  private:
+  void open_kicks(const ForceModel& forces, double step, bool as_closed, const ClothState& state);
+  void close_kicks(const ForceModel& forces, const ClothState& state);
+  Work correct_kicks(const ForceModel& forces, double half_step, bool was_open, bool was_led,
+                     const ClothState& state);
+  void damp_change(const ForceModel& forces, double half_step, const Vec3Field& unchanged,
+                   const ClothState& state);
   double closing_correction(const ForceModel& forces, double step);
   const Vec3Field& force(const ForceModel& forces) const;
   int finish_velocity(ForceModel& forces, double half_step, double tolerance, ClothState& state);
@@ -108,6 +122,12 @@ class Verlet : public Integrator {
 
   const EndVelocity end_;
   VelocitySolver solver_;
+  // Where damping is solved for:
+  Vec3Field integrated_;       ///< m, at the end of the step before contact has changed it
+  Vec3Field free_velocity_;    ///< m/s, of update_velocity_for_positions()
+  Work closing_power_;         ///< with which close_step() computed the work
+  Vec3Field damped_;           ///< m/s, v_c
+  bool holds_damped_ = false;  ///< `force_` and `power_` are those at `damped_`
 };
 
 /// The power in W of what `force` has beside `position_force`, - D v, where particles move by `change` (m/s).

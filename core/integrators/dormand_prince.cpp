@@ -6,6 +6,7 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <utility>
 
 namespace cloth {
@@ -38,6 +39,20 @@ constexpr double least_remembered_error = 1e-4;
 constexpr int max_attempts = 100000;     // of inner steps in one outer step
 constexpr double smallest_step = 1e-14;  // of the outer step
 constexpr double stretch_to_end = 1.01;  // rather than leave a sliver for one more step
+
+/// Whether each kind of `work` in `step` s is as much as its powers at the ends let expect, and no stage has
+/// far more of it than they.
+bool is_resolved(const Work& work, double step, std::span<const Work> power) {
+  constexpr double most_power = 1.5, most_beside_trapezoid = 0.2;
+  return std::ranges::all_of(
+      std::array{&Work::damping_loss, &Work::air, &Work::brush, &Work::pull}, [&](double Work::*kind) {
+        const double begin = power.front().*kind, end = power.back().*kind;
+        const double bound = most_power * std::max(std::abs(begin), std::abs(end));
+        return std::abs(work.*kind - 0.5 * step * (begin + end)) <=
+                   most_beside_trapezoid * step * (std::abs(begin) + std::abs(end)) &&
+               std::ranges::all_of(power, [&](const Work& of) { return std::abs(of.*kind) <= bound; });
+      });
+}
 
 }  // namespace
 
@@ -84,6 +99,10 @@ void DormandPrince::forget(Change change) {
 void DormandPrince::evaluate(ForceModel& forces, int stage, double time, IntegratorReport& report) {
   forces.update(position_, time);
   power_[stage] = forces.force_and_power(position_, speed_[stage], force_);
+  if (stage == 0)
+    begin_position_force_ = forces.position_force();
+  else if (stage < last && forces.has_power())
+    add_scaled(coupling[last][stage], forces.position_force(), position_forces_);
   acceleration_[stage].fill(0);
   add_acceleration(forces.system(), 1, force_, acceleration_[stage]);
   ++report.force_evaluations;
@@ -92,6 +111,7 @@ void DormandPrince::evaluate(ForceModel& forces, int stage, double time, Integra
 /// All stages but the first. Leaves the new state in position_ and the last stage's speed.
 void DormandPrince::attempt(ForceModel& forces, const ClothState& from, const StepTimes& inner,
                             IntegratorReport& report) {
+  position_forces_.fill(0);
   for (int s = 1; s < stages; ++s) {
     position_ = from.position;
     speed_[s] = from.velocity;
@@ -112,11 +132,39 @@ void DormandPrince::take_slope(ForceModel& forces, double time, const ClothState
   evaluate(forces, 0, time, report);
 }
 
+/// Of an accepted step: by the stages, to the order of the method. Near the bound on stiff damping the
+/// velocities of the stages, and with them their powers, are many times those of the solution; then as kicks,
+/// the impulse of damping times the mean of the velocities before and after, which is what the kinetic energy
+/// has lost.
+Work DormandPrince::work_of(const ForceModel& forces, double step, const ClothState& from) {
+  Work work;
+  for (int s = 0; s < last; ++s) work += step * coupling[last][s] * power_[s];
+  if (is_resolved(work, step, power_)) return work;
+  const ClothSystem& system = forces.system();
+  Vec3Field& mean = force_;
+  mean = from.velocity;
+  add_scaled(1, speed_[last], mean);
+  for (double& v : mean.flat()) v *= 0.5;
+  double damped = 0;  // J, by everything that depends on the velocity
+  for (std::size_t i = 0; i < mean.size(); ++i) {
+    if (system.pinned[i]) continue;
+    const Vec3 rest = coupling[last][0] * begin_position_force_[i] + position_forces_[i];
+    damped += mean[i].dot(system.mass[i] * (speed_[last][i] - from.velocity[i]) - step * rest);
+  }
+  // Air and hand have a part that does not depend on the velocity, and changes its sign with it.
+  work = step * forces.power(position_, mean);
+  for (double& v : mean.flat()) v = -v;
+  const Work back = step * forces.power(position_, mean);
+  work.damping_loss = 0.5 * (work.air + back.air + work.brush + back.brush + work.pull + back.pull) - damped;
+  return work;
+}
+
 /// Returns whether the step goes on.
 bool DormandPrince::accept(ForceModel& forces, const StepTimes& inner, ClothState& state, Work& work,
                            IntegratorReport& report) {
   if (contact_) contact_->begin(state);
-  for (int s = 0; s < last; ++s) work += inner.step * coupling[last][s] * power_[s];
+  if (forces.has_power()) work += work_of(forces, inner.step, state);
+  begin_position_force_ = forces.position_force();
   std::swap(state.position, position_);
   state.velocity = speed_[last];
   std::swap(speed_[0], speed_[last]);
@@ -195,6 +243,7 @@ IntegratorReport DormandPrince::step(ForceModel& forces, const StepTimes& times,
   if (force_.size() != size) {
     force_ = Vec3Field(size);
     acceleration_.fill(Vec3Field(size));
+    position_forces_ = Vec3Field(size);
     holds_slope_ = false;
   }
   if (!holds_slope_) take_slope(forces, times.begin, state, report);

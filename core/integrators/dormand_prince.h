@@ -1,7 +1,8 @@
 // The Runge-Kutta pair of orders 5 and 4 of Dormand and Prince (1980) for y = (x, v, work): the step goes on
 // with the solution of order 5 (local extrapolation), the difference of the two is its error estimate, and
-// the last stage of a step is the first of the next one. With a tolerance, the method divides the step that
-// it is given: step sizes by PI control (Gustafsson 1991), as in Hairer et al., I, II.4.
+// the last stage of a step is the first of the next one. Work is no part of the estimate. With a tolerance,
+// the method divides the step that it is given: step sizes by PI control (Gustafsson 1991), as in Hairer et
+// al., I, II.4.
 #pragma once
 
 #include <array>
@@ -57,6 +58,7 @@ class DormandPrince : public Integrator {
   void take_slope(ForceModel& forces, double time, const ClothState& state, IntegratorReport& report);
   void evaluate(ForceModel& forces, int stage, double time, IntegratorReport& report);
   void attempt(ForceModel& forces, const ClothState& from, const StepTimes& inner, IntegratorReport& report);
+  Work work_of(const ForceModel& forces, double step, const ClothState& from);
   bool accept(ForceModel& forces, const StepTimes& inner, ClothState& state, Work& work,
               IntegratorReport& report);
   int first_without_slope() const;
@@ -73,6 +75,8 @@ class DormandPrince : public Integrator {
   std::array<Work, stage_count> power_;              ///< W
   Vec3Field position_;                               ///< m, of the stage; after the last one the new one
   Vec3Field force_;                                  ///< N, scratch
+  Vec3Field begin_position_force_;                   ///< N, p at the first stage
+  Vec3Field position_forces_;                        ///< N, p of the others, weighted as in the solution
 };
 
 }  // namespace cloth

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "scene/builtin_scenes.h"
+#include "simulation/energy_account.h"
 #include "simulation/simulation.h"
 #include "support/direct_run.h"
 #include "support/scenes.h"
@@ -103,6 +104,25 @@ TEST(ErrorControl, GoesOnAfterContactHasMovedTheCloth) {
   EXPECT_GT(contacts, 0);
   const StepCount& count = simulation.count();
   EXPECT_GT(count.force_evaluations, 6 * (count.inner_steps + count.rejected_steps) + 1);  // one per forget
+}
+
+/// At the bound on stiff damping the stages leave the solution: of their powers, with weights of both signs,
+/// the ledger had as much as there was to exchange.
+TEST(ErrorControl, BooksOfStiffDampersInWindWhatTheMotionLoses) {
+  Scene scene = builtin_scene("flag-cotton");
+  scene.cloth.rows = 9, scene.cloth.columns = 12;
+  scene.material->stretch_damping = 0.005;
+  scene.integrator = {.method = "dormand-prince", .time_step = 0.01};
+  Simulation simulation(scene);
+  EnergyAccount account;
+  account.add(simulation.measure());
+  for (int n = 0; n < 30; ++n) {
+    ASSERT_FALSE(simulation.step());
+    account.add(simulation.measure());
+  }
+  EXPECT_LT(account.share(), 0.01);
+  EXPECT_GT(simulation.measure().ledger.forces.damping_loss, 0);
+  EXPECT_GT(account.exchanged(), 0.01);
 }
 
 TEST(ErrorControl, GivesUpWithAReasonWhereNoStepIsShortEnough) {

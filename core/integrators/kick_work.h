@@ -35,7 +35,7 @@ class KickWork {
 
   bool is_known() const { return is_known_; }    ///< open() was called
   bool is_closed() const { return is_closed_; }  ///< close() too
-  const Vec3Field& drift() const { return drift_; }
+  const Vec3Field& drift_velocity() const { return drift_; }
   const Vec3Field& end_velocity() const { return end_.velocity; }
 
   /// J: the work of damping less the trapezoid of its powers. Precondition: is_closed().

@@ -140,7 +140,7 @@ Work Verlet::correct_kicks(const ForceModel& forces, double half_step, bool was_
 /// The damping at the velocity to which the closing kick leads with contact's change of `unchanged` in it.
 void Verlet::damp_change(const ForceModel& forces, double half_step, const Vec3Field& unchanged,
                          const ClothState& state) {
-  damped_ = kicks_.drift();
+  damped_ = kicks_.drift_velocity();
   const SparseField* closing = constraint_ ? constraint_->closing_change() : nullptr;
   if (closing) add_scaled(1, *closing, damped_);
   add_scaled(1, state.velocity, damped_);

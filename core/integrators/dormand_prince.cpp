@@ -99,9 +99,7 @@ void DormandPrince::forget(Change change) {
 void DormandPrince::evaluate(ForceModel& forces, int stage, double time, IntegratorReport& report) {
   forces.update(position_, time);
   power_[stage] = forces.force_and_power(position_, speed_[stage], force_);
-  if (stage == 0)
-    begin_position_force_ = forces.position_force();
-  else if (stage < last && forces.has_power())
+  if (stage > 0 && stage < last && forces.has_power())
     add_scaled(coupling[last][stage], forces.position_force(), position_forces_);
   acceleration_[stage].fill(0);
   add_acceleration(forces.system(), 1, force_, acceleration_[stage]);
@@ -111,7 +109,7 @@ void DormandPrince::evaluate(ForceModel& forces, int stage, double time, Integra
 /// All stages but the first. Leaves the new state in position_ and the last stage's speed.
 void DormandPrince::attempt(ForceModel& forces, const ClothState& from, const StepTimes& inner,
                             IntegratorReport& report) {
-  position_forces_.fill(0);
+  if (forces.has_power()) position_forces_.fill(0);
   for (int s = 1; s < stages; ++s) {
     position_ = from.position;
     speed_[s] = from.velocity;
@@ -130,6 +128,7 @@ void DormandPrince::take_slope(ForceModel& forces, double time, const ClothState
   position_ = state.position;
   speed_[0] = state.velocity;
   evaluate(forces, 0, time, report);
+  if (forces.has_power()) begin_position_force_ = forces.position_force();
 }
 
 /// Of an accepted step: by the stages, to the order of the method. Near the bound on stiff damping the
@@ -163,8 +162,10 @@ Work DormandPrince::work_of(const ForceModel& forces, double step, const ClothSt
 bool DormandPrince::accept(ForceModel& forces, const StepTimes& inner, ClothState& state, Work& work,
                            IntegratorReport& report) {
   if (contact_) contact_->begin(state);
-  if (forces.has_power()) work += work_of(forces, inner.step, state);
-  begin_position_force_ = forces.position_force();
+  if (forces.has_power()) {
+    work += work_of(forces, inner.step, state);
+    begin_position_force_ = forces.position_force();
+  }
   std::swap(state.position, position_);
   state.velocity = speed_[last];
   std::swap(speed_[0], speed_[last]);

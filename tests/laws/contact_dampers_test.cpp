@@ -78,7 +78,7 @@ INSTANTIATE_TEST_SUITE_P(BuiltIn, StiffDampers,
                                            Impact{"bunny", 0.5}, Impact{"fold", 0.5, 0.5, 0.3}),
                          [](const auto& tested) { return tested.param.name; });
 
-/// A stiffer one diverged at the step that is stable in every shape.
+/// With dampers so stiff these diverged, at a step that is stable in every shape without contact.
 TEST(VeryStiffDampers, LetAClothLandAtTheLongestStableStep) {
   for (const Impact& impact :
        {Impact{"rectangle", 1, 3}, Impact{"spikes", 1, 5}, Impact{"twist", 1, 20, 0.2}}) {
@@ -90,7 +90,7 @@ TEST(VeryStiffDampers, LetAClothLandAtTheLongestStableStep) {
   }
 }
 
-/// No step has the velocities with which its damping is evaluated in its state alone.
+/// The velocity at which a step begins its damping is not that of its state.
 TEST(StiffDampersUnderContact, GoOnFromACheckpointToTheBit) {
   for (const char* name : {"ball", "spikes", "fold"}) {
     const Scene scene = stiffly_damped(name, 0.5, 0.5);

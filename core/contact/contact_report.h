@@ -32,6 +32,7 @@ struct ContactReport {
   /// contact has solved for springs and contact together. Friction then changes velocities abruptly, and the
   /// power of dampers at those, times the step, would be more than they take.
   std::optional<Work> force_work;
+  double rate_work = 0;         ///< J, of the deformation rate where it was solved for with contact
   int rounds = 0;               ///< of continuous contact
   int velocity_iterations = 0;  ///< of VelocitySolver
   std::size_t pairs = 0;        ///< pairs of near features in the last round

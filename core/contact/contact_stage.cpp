@@ -1,6 +1,7 @@
 #include "contact/contact_stage.h"
 
 #include "contact/continuous_contact.h"
+#include "contact/limited_contact.h"
 #include "contact/obstacle_contact.h"
 #include "contact/stiff_contact.h"
 
@@ -9,35 +10,58 @@ namespace {
 
 class ParticleContact : public ContactStage {
  public:
-  ParticleContact(const Scene& scene, bool long_steps)
-      : contact_(scene.obstacles, gravity_of(scene).norm()), long_steps_(long_steps) {}
+  ParticleContact(const Scene& scene, const ClothSystem& system, bool long_steps)
+      : contact_(scene.obstacles, gravity_of(scene).norm()), long_steps_(long_steps) {
+    if (long_steps && scene.deformation) rate_.emplace(*scene.deformation, system);
+  }
 
   ContactReport resolve(const ContactStep& step, ClothState& state) override {
     ContactBegin begin{step.position_before, step.velocity_before, step.times.step, step.memory};
     if (!long_steps_) return contact_.apply(step.system, begin, state);
+    const bool is_solved = !contact_.is_inside(step.system, step.position_before);
+    if (step.limit && !(is_solved && contact_.touches(step.system, state))) step.limit();
     if (!contact_.touches(step.system, state)) return {};
     ConstrainedStep constrained;
-    if (!contact_.is_inside(step.system, step.position_before)) {
-      constrained.weight = step.stage_weight * step.times.step;
-      constrained.position = state.position;
-      const LongStep long_step{constrained.weight, step.times.end, step.position_before, state.velocity,
-                               step.integrator.force_left(step.forces, step.times)};
-      constrained.held = stiff_contact_.solve(step.system, step.forces, contact_.obstacles(), long_step,
-                                              constrained.position);
-      begin.constrained = &constrained;
-    }
+    const double rate_work = is_solved ? solve(step, state, constrained) : 0;
+    if (is_solved) begin.constrained = &constrained;
     ContactReport report = contact_.apply(step.system, begin, state);
     report.acted = true;
+    report.rate_work = rate_work;
     return report;
   }
+
+  bool solves_rate() const override { return rate_.has_value(); }
 
   void append_marks(const Vec3Field& position, std::vector<ContactMark>& marks) const override {
     contact_.append_marks(position, marks);
   }
 
  private:
+  /// The step with contact, and with the rate where the positions without it would exceed that. Returns the
+  /// work of the rate, J.
+  double solve(const ContactStep& step, const ClothState& state, ConstrainedStep& solved) {
+    solved.weight = step.stage_weight * step.times.step;
+    solved.position = state.position;
+    LongStep whole{solved.weight, step.times.end, step.position_before, state.velocity,
+                   step.integrator.force_left(step.forces, step.times)};
+    const std::vector<Obstacle>& obstacles = contact_.obstacles();
+    if (!step.limit || rate_->keeps(state.position)) {
+      solved.held = stiff_contact_.solve(step.system, step.forces, obstacles, whole, solved.position);
+      if (!step.limit || rate_->keeps(solved.position)) return 0;
+      solved.position = state.position;
+    }
+    whole.rate = &*rate_;
+    solved.held = limited_contact_.solve(step.system, step.forces, obstacles, whole, solved.position);
+    Vec3Field velocity = state.velocity;
+    add_scaled(1 / solved.weight, solved.position, velocity);
+    add_scaled(-1 / solved.weight, state.position, velocity);
+    return solved.weight * rate_->power(solved.position, velocity);
+  }
+
   ObstacleContact contact_;
   StiffContact stiff_contact_;
+  LimitedContact limited_contact_;
+  std::optional<RateTensions> rate_;  ///< of long steps, if the scene has a rate
   bool long_steps_;
 };
 
@@ -50,7 +74,7 @@ std::unique_ptr<ContactStage> make_contact_stage(const Scene& scene, const Cloth
   if (has_continuous_contact(scene))
     return std::make_unique<ContinuousContact>(scene, system, transitions, thickness, time, long_steps);
   if (scene.obstacles.empty()) return nullptr;
-  return std::make_unique<ParticleContact>(scene, long_steps);
+  return std::make_unique<ParticleContact>(scene, system, long_steps);
 }
 
 }  // namespace cloth

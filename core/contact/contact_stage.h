@@ -11,15 +11,16 @@
 // spheres cost two comparisons of squared distances per particle. If any particle is inside, all are tested a
 // second time while the state is corrected, and methods that keep the force (MethodFacts::keeps_force)
 // evaluate it once more. Before that correction, implicit methods with long steps find the positions of the
-// particles inside by Newton's method: at most 12 linear solves over the whole cloth (stiff_contact.h).
+// particles inside by Newton's method: at most 12 linear solves over the whole cloth (stiff_contact.h), and
+// with a deformation rate that it reaches at most 60 more (limited_contact.h).
 //
 // Cost per step, continuous: the cloth's bounds are computed, which is linear in particles; while an
 // obstacle's bounds are away from them, it costs no more. Near the cloth, each round tests the bounds of
 // every face of the cloth against each sphere, where the pairs of earlier rounds cannot be used again, and
 // relaxes those pairs nearer than 1.5 thicknesses that the step brings to their thickness, in 20 sweeps, in
 // up to 1000 for stacks of layers. A step is linear in faces and such pairs; it usually has fewer than ten
-// rounds. After long steps of implicit methods up to 20 linear solves over the whole cloth come before
-// (stiff_target.h). With Verlet a touching step costs no more force evaluations than another, and one more
+// rounds. After long steps of implicit methods up to 20 linear solves over the whole cloth come before,
+// with a deformation rate up to 60 (stiff_target.h). With Verlet a touching step costs no more force evaluations than another, and one more
 // where a limiter ties the closing kick to the drift. docs/performance.md has measured times.
 #pragma once
 
@@ -48,6 +49,9 @@ struct ContactStep {
   const Vec3Field& velocity_before;  ///< m/s, at the beginning of the step
   ContactMemory& memory;             ///< in: of the last step; out: of this one
   std::function<double(const Vec3Field& position)> potential;  ///< J, elastic and gravity
+  /// Brings the state, the integrator's result, within the deformation rate; returns whether that moved
+  /// anything. Empty: there is none, or that has been done.
+  std::function<bool()> limit = {};
 };
 
 class ContactStage {
@@ -61,6 +65,9 @@ class ContactStage {
   virtual void append_marks(const Vec3Field& position, std::vector<ContactMark>& marks) const = 0;
 
   virtual bool is_continuous() const { return false; }
+
+  /// Whether it solves for the deformation rate with contact, or else calls ContactStep::limit.
+  virtual bool solves_rate() const { return false; }
 
   // Only continuous contact has what follows.
   /// Null: one thread. Results do not depend on the team.

@@ -39,7 +39,7 @@ void ContinuousContact::begin(const StepTimes& times) {
   part_ = note_still() ? 1 : 0;
   free_contains_contacts_ = false;
   radius_scale_.assign(position_.size(), 1.0);
-  touches_.clear(), loaded_.clear(), force_work_.reset();
+  touches_.clear(), loaded_.clear(), force_work_.reset(), rate_work_ = 0;
   substep_ = 0, operation_count_ = 0, has_moved_ = false;
   substeps_ = substeps_for(bodies_, paths_, mean_edge_);
   if (substeps_ > 1) whole_paths_ = paths_;
@@ -96,8 +96,9 @@ bool ContinuousContact::is_near(const ContactStep& step, const ClothState& state
 }
 
 /// Leads the state to the solution of the step with the pairs' constraints, with the planes that separate
-/// them as the step begins; the rounds begin from there.
-void ContinuousContact::solve_long_step(const ContactStep& step, ClothState& state) {
+/// them as the step begins, and within the deformation rate; the rounds begin from there. Returns whether
+/// they violated any.
+bool ContinuousContact::solve_long_step(const ContactStep& step, ClothState& state) {
   constraints_.clear();
   for (std::size_t k = 0; k < pairs_.size(); ++k) {
     ContactConstraint& contact =
@@ -113,15 +114,21 @@ void ContinuousContact::solve_long_step(const ContactStep& step, ClothState& sta
   constexpr double above_fall = 1.01;
   const double accepted =
       std::max(arrived_length(), above_fall * gravity_ * step.times.step * step.times.step);
-  if (StiffTarget::largest_violation(constraints_, target_position_) <= accepted) return;
-  const LongStep whole{step.stage_weight * step.times.step, step.times.end, step.position_before,
-                       state.velocity, step.integrator.force_left(step.forces, step.times)};
-  if (!stiff_target_.solve(step.system, step.forces, constraints_, whole, accepted, target_position_)) return;
+  if (StiffTarget::largest_violation(constraints_, target_position_) <= accepted) return false;
+  const LongStep whole{step.stage_weight * step.times.step,
+                       step.times.end,
+                       step.position_before,
+                       state.velocity,
+                       step.integrator.force_left(step.forces, step.times),
+                       step.limit ? &*rate_ : nullptr};
+  if (!stiff_target_.solve(step.system, step.forces, constraints_, whole, accepted, target_position_))
+    return false;
   approach_position_ = state.position;
   for (std::size_t i = 0; i < position_.size(); ++i)
     state.velocity.add(i, (target_position_[i] - state.position[i]) / whole.weight);
   state.position = free_position_ = target_position_;
   force_work_ = step.integrator.correct_work(step.forces, step.times, state);
+  if (whole.rate) rate_work_ = whole.weight * rate_->power(state.position, state.velocity);
   for (std::size_t c = 0; c < constraints_.size(); ++c) {
     if (!(stiff_target_.loads()[c] > 0)) continue;
     Touch& touch = loaded_.emplace_back();
@@ -133,6 +140,7 @@ void ContinuousContact::solve_long_step(const ContactStep& step, ClothState& sta
     touch.velocity = velocity_of_far_side(c, step.times.step);
   }
   find_pairs();
+  return true;
 }
 
 /// Their impulses become estimates for the velocity solve, so that friction has them, and not a part of the
@@ -150,10 +158,14 @@ ContactReport ContinuousContact::resolve(const ContactStep& step, ClothState& st
   team_ = job_.begin();
   close_pairs_.set_team(team_), solver_.set_team(team_);
   ContactReport report;
-  if (is_near(step, state)) {
-    if (long_steps_ && substeps_ == 1) solve_long_step(step, state);
-    report = resolve_near(step, state);
+  bool near = is_near(step, state);
+  const auto solves = [&] { return near && long_steps_ && substeps_ == 1; };
+  if (!(solves() && solve_long_step(step, state)) && step.limit && step.limit()) {
+    starts_ = starts_before_;
+    near = is_near(step, state);
+    if (solves()) solve_long_step(step, state);
   }
+  if (near) report = resolve_near(step, state);
   job_.end();
   return report;
 }
@@ -178,6 +190,7 @@ ContactReport ContinuousContact::resolve_near(const ContactStep& step, ClothStat
   if (!has_moved_ && touches_.empty() && !force_work_) return report;
   report.acted = true;
   report.force_work = force_work_;
+  report.rate_work = rate_work_;
   report.pairs = pairs_.size() + waiting_.size();
   std::swap(integrated_position_, state.position);
   copy(position_, team_, state.position);

@@ -101,6 +101,7 @@ ContinuousContact::ContinuousContact(const Scene& scene, const ClothSystem& syst
     full_self_thickness_ = scene.self_contact->thickness;
     self_friction_ = scene.self_contact->friction;
   }
+  if (long_steps && scene.deformation) rate_.emplace(*scene.deformation, system);
   is_staggered_ = needs_stagger(obstacles_, surface_, system.start);
   set_thickness(time);
   longest_path_ = scene.self_contact || has_mesh(bodies_) ? edges_of_a_search * mean_edge_ : infinity;

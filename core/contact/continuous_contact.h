@@ -41,6 +41,7 @@ class ContinuousContact : public ContactStage {
   ContactReport resolve(const ContactStep& step, ClothState& state) override;
   void append_marks(const Vec3Field& position, std::vector<ContactMark>& marks) const override;
   bool is_continuous() const override { return true; }
+  bool solves_rate() const override { return rate_.has_value(); }
   void set_team(WorkerTeam* team, ThreadUse use) override { job_.set_team(team, use); }
   void set_stop_test(const std::function<bool()>& test) override { stop_test_ = test; }
   const std::vector<Pose>& poses() const override { return starts_; }
@@ -74,7 +75,7 @@ class ContinuousContact : public ContactStage {
   enum class RoundsEnd { arrived, pinched, exhausted, interrupted };
 
   bool is_near(const ContactStep& step, const ClothState& state);
-  void solve_long_step(const ContactStep& step, ClothState& state);
+  bool solve_long_step(const ContactStep& step, ClothState& state);
   void take_loads(const ContactStep& step, ClothState& state);
   ContactReport resolve_near(const ContactStep& step, ClothState& state);
   void begin(const StepTimes& times);
@@ -153,8 +154,10 @@ class ContinuousContact : public ContactStage {
   std::function<bool()> stop_test_;
   bool long_steps_ = false;  ///< contact and springs have to be solved together
   StiffTarget stiff_target_;
-  double mean_edge_ = 0;       ///< m, of the cloth at its start
-  bool is_staggered_ = false;  ///< see stagger.h
+  std::optional<RateTensions> rate_;  ///< with long_steps_
+  double rate_work_ = 0;              ///< J, of the present step, solved by StiffTarget
+  double mean_edge_ = 0;              ///< m, of the cloth at its start
+  bool is_staggered_ = false;         ///< see stagger.h
   ThicknessTransition thickness_transition_;
   double full_thickness_ = 0, full_self_thickness_ = 0, self_friction_ = 0;  ///< m, m; of the scene
   double thickness_ = 0, self_thickness_ = 0;                                ///< m, in this step

@@ -1,10 +1,26 @@
 #include "contact/long_step_solver.h"
 
+#include <algorithm>
+
 #include "integrators/integrator.h"
 
 namespace cloth {
 
+double stiffest_membrane(const ClothSystem& system) {
+  double stiffest = 0;
+  for (const MembraneTriangle& t : system.membrane)
+    for (const double bound : edge_bounds(t)) stiffest = std::max(stiffest, bound);
+  return stiffest;
+}
+
+double largest_resistance(const ClothSystem& system, double weight) {
+  double stiffest = stiffest_membrane(system);
+  for (const SpringRun& run : system.springs) stiffest = std::max(stiffest, run.stiffness);
+  return stiffest + *std::max_element(system.mass.begin(), system.mass.end()) / (weight * weight);
+}
+
 void LongStepSolver::begin(ForceModel& forces, const LongStep& step, const Vec3Field& position) {
+  if (step.rate) step.rate->begin(step.weight);
   integrated_position_ = position;
   forces.update(position, step.end);
   forces.force(position, step.velocity, integrated_force_);
@@ -18,6 +34,7 @@ void LongStepSolver::find_residual(const ClothSystem& system, ForceModel& forces
   add_scaled(1 / step.weight, residual, velocity_);
   forces.update(position, step.end);
   forces.force(position, velocity_, force_);
+  if (step.rate) step.rate->add_force(position, force_);
   for (std::size_t i = 0; i < position.size(); ++i)
     residual.set(i, system.pinned[i] ? Vec3::Zero()
                                      : Vec3(system.mass[i] / (step.weight * step.weight) * residual[i] -
@@ -25,11 +42,13 @@ void LongStepSolver::find_residual(const ClothSystem& system, ForceModel& forces
   if (step.force) add_scaled(1, *step.force, residual);
 }
 
-Linearisation& LongStepSolver::linearise(const ClothSystem& system, ForceModel& forces, double weight,
+Linearisation& LongStepSolver::linearise(const ClothSystem& system, ForceModel& forces, const LongStep& step,
                                          const Vec3Field& position) {
+  const double weight = step.weight;
   const LinearisationWeights weights{.position = weight * weight, .velocity = weight, .clamped = true};
   method_ = choose_linear_method(system, weights).method;
   forces.linearise(position, weights, linearisation_);
+  if (step.rate) step.rate->add_stiffness(position, linearisation_);
   return linearisation_;
 }
 

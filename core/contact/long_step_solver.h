@@ -8,6 +8,7 @@
 // the cheapest for the cloth.
 #pragma once
 
+#include "contact/rate_tensions.h"
 #include "forces/force_model.h"
 #include "integrators/implicit/linear_choice.h"
 #include "integrators/implicit/linear_solver.h"
@@ -22,22 +23,30 @@ struct LongStep {
   const Vec3Field& begin;            ///< m, the positions
   const Vec3Field& velocity;         ///< m/s, v*, where the method ended
   const Vec3Field* force = nullptr;  ///< N, r; null: 0
+  RateTensions* rate = nullptr;      ///< null: none, or it is kept already
 };
+
+/// N/m, along an edge of the membrane; 0 without one.
+double stiffest_membrane(const ClothSystem& system);
+
+/// N/m, of the stiffest spring or membrane and the heaviest particle's inertia M/w^2 together. `weight`: w in
+/// s.
+double largest_resistance(const ClothSystem& system, double weight);
 
 class LongStepSolver {
  public:
   /// `position`: x*.
   void begin(ForceModel& forces, const LongStep& step, const Vec3Field& position);
 
-  /// g in N, 0 on pins. Updates the force model to the positions.
+  /// g less the rate's tensions in N, 0 on pins. Updates the force model to the positions.
   void find_residual(const ClothSystem& system, ForceModel& forces, const LongStep& step,
                      const Vec3Field& position, Vec3Field& residual);
 
   const Vec3Field& integrated_force() const { return integrated_force_; }  ///< N, f(x*, v*)
-  const Vec3Field& force() const { return force_; }                        ///< N, f of the last residual
+  const Vec3Field& force() const { return force_; }  ///< N, of the last residual: f and the tensions
 
-  /// A at the positions, in kg, for constraints to be added to its blocks.
-  Linearisation& linearise(const ClothSystem& system, ForceModel& forces, double weight,
+  /// A at the positions, in kg, with the tensions' part, for constraints to be added to its blocks.
+  Linearisation& linearise(const ClothSystem& system, ForceModel& forces, const LongStep& step,
                            const Vec3Field& position);
 
   /// A solution = right_hand_side; false where that was not found. `position`: that of linearise().

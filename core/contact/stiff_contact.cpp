@@ -81,17 +81,17 @@ void StiffContact::keep_along_surfaces(Vec3Field& field) const {
 }
 
 /// Constrained normal directions get a stiffness far above all others, so that the matrix keeps its pattern.
-bool StiffContact::find_direction(const ClothSystem& system, ForceModel& forces, double weight,
+bool StiffContact::find_direction(const ClothSystem& system, ForceModel& forces, const LongStep& step,
                                   const Vec3Field& position) {
   constexpr double holding = 1e6;
-  Linearisation& matrix = solver_.linearise(system, forces, weight, position);
+  Linearisation& matrix = solver_.linearise(system, forces, step, position);
   for (const HeldParticle& held : held_) {
     const SymmetricBlock node = matrix.nodes[held.particle];
     matrix.nodes.add(held.particle, block_along(0, holding * (node.xx + node.yy + node.zz), held.normal));
   }
   along_ = residual_;
   keep_along_surfaces(along_);
-  for (double& value : along_.flat()) value *= -weight * weight;
+  for (double& value : along_.flat()) value *= -step.weight * step.weight;
   const bool solved = solver_.solve(system, position, along_, direction_);
   keep_along_surfaces(direction_);
   return solved;
@@ -109,7 +109,7 @@ std::vector<HeldParticle> StiffContact::solve(const ClothSystem& system, ForceMo
   double first = 0;  // J, negative
   for (int n = 0; n < max_iterations; ++n) {
     release();
-    if (!find_direction(system, forces, step.weight, position)) break;
+    if (!find_direction(system, forces, step, position)) break;
     start_ = position;
     sides_at_start_ = sides_;
     const double before = dot(direction_.flat(), residual_.flat());

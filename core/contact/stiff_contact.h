@@ -56,7 +56,7 @@ class StiffContact {
                      const Vec3Field& position);
   void release();
   void keep_along_surfaces(Vec3Field& field) const;
-  bool find_direction(const ClothSystem& system, ForceModel& forces, double weight,
+  bool find_direction(const ClothSystem& system, ForceModel& forces, const LongStep& step,
                       const Vec3Field& position);
 
   Vec3Field begin_;  ///< m

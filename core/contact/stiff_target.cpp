@@ -28,10 +28,11 @@ double StiffTarget::largest_violation(std::span<const ContactConstraint> contact
   return largest;
 }
 
-/// A penalty is ten times the largest inertia, M/w^2, that it adds to.
+/// A penalty is ten times the largest inertia, M/w^2, that it adds to; where contacts are of one particle
+/// each also a part of what springs resist, with which the loads come to their values in fewer iterations.
 void StiffTarget::add_penalties(const ClothSystem& system, double weight, const Vec3Field& position,
                                 Linearisation& matrix) {
-  constexpr double part = 10;
+  constexpr double part = 10, part_of_resistance = 0.2;
   const double square = weight * weight;
   size_.resize(position.size());
   for (std::size_t i = 0; i < size_.size(); ++i) {
@@ -45,7 +46,7 @@ void StiffTarget::add_penalties(const ClothSystem& system, double weight, const 
       largest = std::max(largest, size_[at(contact.particle[k])]);
       weights += std::abs(contact.weight[k]);
     }
-    penalty_[c] = part * largest / square;
+    penalty_[c] = part * largest / square + part_of_resistance * resistance_;
     if (!(load_at(c, position) > 0)) continue;
     for (std::size_t k = 0; k < at(contact.count); ++k)
       matrix.nodes.add(
@@ -72,26 +73,28 @@ void StiffTarget::find_push(const ClothSystem& system, ForceModel& forces, const
 
 bool StiffTarget::find_direction(const ClothSystem& system, ForceModel& forces, const LongStep& step,
                                  const Vec3Field& position) {
-  add_penalties(system, step.weight, position, solver_.linearise(system, forces, step.weight, position));
+  add_penalties(system, step.weight, position, solver_.linearise(system, forces, step, position));
   find_push(system, forces, step, position);
   right_ = push_;
   for (double& value : right_.flat()) value *= step.weight * step.weight;
   return solver_.solve(system, position, right_, direction_);
 }
 
-/// Along the direction, as far as what is left of the equation falls.
+/// Along the direction to where what is left of the equation, along it, is next to 0: were its sign let turn
+/// by more, constraints that act in turns would keep the method from ending.
 void StiffTarget::move(const ClothSystem& system, ForceModel& forces, const LongStep& step, double before,
                        Vec3Field& position) {
   constexpr int most_trials = 6;
-  constexpr double accepted = 0.5;
+  constexpr double accepted = 0.2, least = 0.1;
   start_ = position;
   double length = 1;
   for (int trial = 1;; ++trial) {
     position = start_;
     add_scaled(length, direction_, position);
     find_push(system, forces, step, position);
-    if (trial == most_trials || dot(direction_.flat(), push_.flat()) >= -accepted * before) return;
-    length *= 0.5;
+    const double after = dot(direction_.flat(), push_.flat());
+    if (trial == most_trials || after >= -accepted * before) return;
+    length *= std::max(least, before / (before - after));
   }
 }
 
@@ -101,28 +104,35 @@ void StiffTarget::update_loads(const Vec3Field& position) {
 
 bool StiffTarget::solve(const ClothSystem& system, ForceModel& forces,
                         std::span<const ContactConstraint> contacts, const LongStep& step, double accepted,
-                        Vec3Field& position) {
-  constexpr int most_iterations = 20;
+                        Vec3Field& position, const Renewal& renewed) {
+  const int most_iterations = step.rate ? 60 : 20;
   constexpr double least_work = 1e-3;     // of the first iteration's, and
-  constexpr double least_missing = 0.01;  // of the first violation: ends below both
+  constexpr double least_missing = 0.01;  // of the first violation, where contacts stay: ends below both
   contacts_ = contacts;
   const double first_missing = largest_violation(contacts, position);
-  if (!(first_missing > accepted)) return false;
+  const auto keeps_rate = [&] { return !step.rate || step.rate->keeps(position); };
+  load_.assign(contacts.size(), 0.0);
+  if (!(first_missing > accepted) && keeps_rate()) return false;
   if (push_.size() != position.size()) push_ = direction_ = right_ = Vec3Field(position.size());
   integrated_position_ = position;
   solver_.begin(forces, step, position);
-  load_.assign(contacts.size(), 0.0);
+  resistance_ = renewed ? largest_resistance(system, step.weight) : 0;
   penalty_.assign(contacts.size(), 0.0);
+  const double most_missing = renewed ? accepted : std::max(accepted, least_missing * first_missing);
   double first = 0;  // J
   for (int n = 0; n < most_iterations; ++n) {
     if (!find_direction(system, forces, step, position)) break;
     const double before = dot(direction_.flat(), push_.flat());
     if (n == 0) first = before;
-    if (before <= least_work * first &&
-        largest_violation(contacts, position) <= std::max(accepted, least_missing * first_missing))
+    if (before <= least_work * first && keeps_rate() &&
+        largest_violation(contacts_, position) <= most_missing)
       break;
     move(system, forces, step, before, position);
     update_loads(position);
+    if (step.rate) step.rate->update(position);
+    if (!renewed) continue;
+    contacts_ = renewed(position);
+    load_.resize(contacts_.size()), penalty_.resize(contacts_.size());
   }
   contacts_ = {};
   const auto values = position.flat();

@@ -15,9 +15,11 @@ std::optional<ContactReport> Simulation::contact_of(const StepTimes& times, cons
     there.position = position;
     return energy_of(there).total();
   };
+  std::function<bool()> limit;
+  if (leaves_rate_to_contact()) limit = [this] { return limit_deformation(); };
   const double stage_weight = facts_of(scene_.integrator.method).stage_weight.value_or(1);
   return contact_->resolve({system_, *forces_, *integrator_, times, stage_weight, position_before,
-                            velocity_before, run_.contact_memory, potential},
+                            velocity_before, run_.contact_memory, potential, limit},
                            run_.state);
 }
 
@@ -38,6 +40,7 @@ void Simulation::resolve_contact(const StepTimes& times) {
 
 void Simulation::book_contact(const StepTimes& times) {
   if (!inner_contact_) run_.ledger.contact += run_.last_contact.work;
+  run_.ledger.limiter += run_.last_contact.rate_work;
   run_.contact_impulse += run_.last_contact.impulse;
   if (inner_contact_) return;
   const auto& found = run_.last_contact.force_work;

@@ -20,8 +20,13 @@ void Simulation::limit_start() {
   if (prepare_ && limiter_) limiter_->limit_initial_shape(run_.time_step, run_.state);
 }
 
-/// Where the method has not had it done within the step.
-void Simulation::limit_deformation() {
+bool Simulation::leaves_rate_to_contact() const {
+  return limiter_ && contact_ && contact_->solves_rate() && !unreachable_;
+}
+
+/// Where the method has not had it done within the step. Returns whether that moved anything.
+bool Simulation::limit_deformation() {
+  bool moved = false;
   if (!limits_drift_) {
     const bool by_energy = !integrator_->drifts_with_end_velocity();
     const Energy before = by_energy ? energy_of(run_.state) : Energy{};
@@ -32,9 +37,11 @@ void Simulation::limit_deformation() {
         run_.ledger.limiter += gained + kinetic_energy(system_, run_.state.velocity) - before.kinetic;
       }
       integrator_->forget(Change::state);
+      moved = true;
     }
   }
   run_.last_limit = limiter_->report();
+  return moved;
 }
 
 /// A rate that acts after a method's inner steps may move particles back into obstacles.

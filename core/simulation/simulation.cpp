@@ -225,7 +225,7 @@ std::optional<Divergence> Simulation::step() {
   const bool waits = has_continuous_contact() && !limiter_ && integrator_->waits_for_contact(*forces_);
   IntegratorReport report = waits ? integrator_->open_step(*forces_, times, run_.state, work)
                                   : integrator_->step(*forces_, times, run_.state, work);
-  if (limiter_ && !report.failure) limit_between_contacts(times);
+  if (limiter_ && !report.failure && !leaves_rate_to_contact()) limit_between_contacts(times);
   if (contact_ && (!report.failure || inner_contact_)) resolve_contact(times);
   report.velocity_iterations += run_.last_contact.velocity_iterations;
   if (waits && !run_.last_contact.acted && !run_.last_contact.interrupted)

@@ -192,7 +192,8 @@ class Simulation {
   void share_work();
   void make_limiter(const std::vector<double>& tension);
   void limit_start();
-  void limit_deformation();
+  bool limit_deformation();
+  bool leaves_rate_to_contact() const;
   void limit_between_contacts(const StepTimes& times);
   void book_limiter();
   void note_breach(bool by_contact);

@@ -120,6 +120,7 @@ ContactLedger ledger_run(const Scene& scene, const Preparation& prepare, double 
     ledger.work = now.ledger.contact;
     ledger.positive += std::max(given, 0.0);
     ledger.largest_gift = std::max(ledger.largest_gift, given);
+    ledger.largest_strain = std::max(ledger.largest_strain, now.strain.maximum());
     ledger.gain = std::max(ledger.gain, now.energy_error());
     ledger.account.add(now);
   }

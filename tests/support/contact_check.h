@@ -59,6 +59,7 @@ struct ContactLedger {
   double work = 0;          ///< J, of contact
   double positive = 0;      ///< J, what the steps that gave something gave
   double largest_gift = 0;  ///< J, of a step
+  double largest_strain = 0;
   double gain = 0;          ///< J, the most that the error has been above zero: energy that nothing gave
   double median_step = 0, worst_step = 0;  ///< s of this thread
   double worst_at = 0;                     ///< s, in the run

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "integrators/implicit_methods.h"
+#include "limiter/tension_springs.h"
 #include "scene/builtin_scenes.h"
 #include "simulation/simulation.h"
 #include "support/contact_check.h"
@@ -107,6 +108,50 @@ TEST(StiffTarget, SolvesTheStepWithLoadsThatPushWhereTheClothIsAndNowhereElse) {
       EXPECT_LT(result.idle, by_three ? 0.5 : 1e-9) << where;
       EXPECT_GT(result.loaded, 0) << where;
     }
+}
+
+/// Tensions as loads: they pull the ends of springs at their longest, and no others.
+TEST(StiffTarget, KeepsTheDeformationRateWithTensionsOfTautSprings) {
+  for (const double rate : {0.02, 0.002}) {
+    Scene scene = builtin_scene("curtain");
+    scene.deformation.emplace().rate = rate;
+    const Simulation simulation(scene);
+    const ClothSystem& system = simulation.system();
+    ForceModel forces(scene, system);
+    ClothState state = simulation.state();
+    for (std::size_t i = 0; i < state.position.size(); ++i)
+      if (!system.pinned[i]) state.velocity.set(i, {0, -3, 0.5 * std::sin(9 * state.position[i].x())});
+    const Vec3Field begin = state.position;
+    ImplicitEuler method(1e-6, 100);
+    Work work;
+    method.step(forces, {0, weight, weight}, state, work);
+    Vec3Field position = state.position;
+    RateTensions tensions(*scene.deformation, system);
+    ASSERT_FALSE(tensions.keeps(position)) << rate;
+    const std::vector<TensionSpring> springs = tension_springs(*scene.deformation, system);
+    const double excess = largest_excess(springs, position);
+    ASSERT_GT(excess, 0.1) << rate;
+
+    StiffTarget target;
+    EXPECT_TRUE(target.solve(system, forces, {}, {weight, weight, begin, state.velocity, nullptr, &tensions},
+                             0, position));
+    EXPECT_LT(largest_excess(springs, position), 0.01 * excess) << rate;
+
+    const Vec3Field before = force_after_step(forces, state, weight, state.position),
+                    after = force_after_step(forces, state, weight, position);
+    Vec3Field pull(position.size());
+    tensions.add_force(position, pull);
+    double squares = 0, pulls = 0;
+    for (std::size_t i = 0; i < position.size(); ++i) {
+      if (system.pinned[i]) continue;
+      const Vec3 moved = position[i] - state.position[i];
+      squares += (after[i] + pull[i] - before[i] - system.mass[i] / (weight * weight) * moved).squaredNorm();
+      pulls += pull[i].squaredNorm();
+    }
+    EXPECT_LT(std::sqrt(squares / pulls), 0.1) << rate;
+    EXPECT_GT(pulls, 0) << rate;
+    EXPECT_LT(tensions.power(position, state.velocity), 0) << "they take from what falls";
+  }
 }
 
 TEST(StiffTarget, LeavesAStepThatViolatesNothing) {

@@ -20,8 +20,9 @@
 // relaxes those pairs nearer than 1.5 thicknesses that the step brings to their thickness, in 20 sweeps, in
 // up to 1000 for stacks of layers. A step is linear in faces and such pairs; it usually has fewer than ten
 // rounds. After long steps of implicit methods up to 20 linear solves over the whole cloth come before,
-// with a deformation rate up to 60 (stiff_target.h). With Verlet a touching step costs no more force evaluations than another, and one more
-// where a limiter ties the closing kick to the drift. docs/performance.md has measured times.
+// with a deformation rate up to 60 (stiff_target.h). With Verlet a touching step costs no more force
+// evaluations than another, and one more where a limiter ties the closing kick to the drift.
+// docs/performance.md has measured times.
 #pragma once
 
 #include <functional>

@@ -41,7 +41,7 @@ INSTANTIATE_TEST_SUITE_P(Of, LongStepsWithARate,
                                            Landing{"tablecloth-denim", 0.005, 0.7},
                                            Landing{"corner", 0.01, 0.7}, Landing{"spikes", 0.01, 0.7},
                                            Landing{"twist", 0.01, 0.7}, Landing{"bunny", 0.01, 0.5}),
-                         [](const auto& info) { return test_word(info.param.name); });
+                         [](const auto& landing) { return test_word(landing.param.name); });
 
 /// The integrator's positions alone exceed the rate, those with contact reach the surface: neither is lost.
 TEST(LongStepsWithARate, KeepThePinsAndTheObstacles) {
@@ -60,9 +60,10 @@ TEST(LongStepsWithARate, KeepThePinsAndTheObstacles) {
         ASSERT_EQ(Vec3(simulation.state().position[i]), Vec3(start[i]));
         continue;
       }
-      for (const Obstacle& obstacle : scene.obstacles)
-        if (const auto out = penetration(obstacle, simulation.state().position[i]))
-          ASSERT_LT((out->point - simulation.state().position[i]).norm(), 1e-9);
+      for (const Obstacle& obstacle : scene.obstacles) {
+        const auto out = penetration(obstacle, simulation.state().position[i]);
+        if (out) ASSERT_LT((out->point - simulation.state().position[i]).norm(), 1e-9);
+      }
     }
   }
   EXPECT_GT(touched, 0);

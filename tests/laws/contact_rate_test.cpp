@@ -37,7 +37,7 @@ TEST_P(LongStepsWithARate, MakeNoEnergyInContactAndStretchLittle) {
 
 INSTANTIATE_TEST_SUITE_P(Of, LongStepsWithARate,
                          ::testing::Values(Landing{"ball"}, Landing{"tablecloth"}, Landing{"cube", 0.001},
-                                           Landing{"rectangle"}, Landing{"disc", 0.01, 0.5},
+                                           Landing{"rectangle"}, Landing{"disc", 0.01, 0.5, 0.3},
                                            Landing{"tablecloth-denim", 0.005, 0.7},
                                            Landing{"corner", 0.01, 0.7}, Landing{"spikes", 0.01, 0.7},
                                            Landing{"twist", 0.01, 0.7}, Landing{"bunny", 0.01, 0.5}),
@@ -62,7 +62,7 @@ TEST(LongStepsWithARate, KeepThePinsAndTheObstacles) {
       }
       for (const Obstacle& obstacle : scene.obstacles) {
         const auto out = penetration(obstacle, simulation.state().position[i]);
-        if (out) ASSERT_LT((out->point - simulation.state().position[i]).norm(), 1e-9);
+        ASSERT_TRUE(!out || (out->point - simulation.state().position[i]).norm() < 1e-9);
       }
     }
   }

@@ -22,11 +22,11 @@ class ParticleContact : public ContactStage {
     if (step.limit && !(is_solved && contact_.touches(step.system, state))) step.limit();
     if (!contact_.touches(step.system, state)) return {};
     ConstrainedStep constrained;
-    const double rate_work = is_solved ? solve(step, state, constrained) : 0;
-    if (is_solved) begin.constrained = &constrained;
+    Solution solution;
+    if (is_solved) solution = solve(step, state, constrained), begin.constrained = &constrained;
     ContactReport report = contact_.apply(step.system, begin, state);
     report.acted = true;
-    report.rate_work = rate_work;
+    report.rate_work = solution.rate_work, report.force_work = solution.force_work;
     return report;
   }
 
@@ -37,25 +37,33 @@ class ParticleContact : public ContactStage {
   }
 
  private:
-  /// The step with contact, and with the rate where the positions without it would exceed that. Returns the
-  /// work of the rate, J.
-  double solve(const ContactStep& step, const ClothState& state, ConstrainedStep& solved) {
-    solved.weight = step.stage_weight * step.times.step;
+  /// Of a step solved with contact, at the velocities of its solution.
+  struct Solution {
+    double rate_work = 0;            ///< J
+    std::optional<Work> force_work;  ///< see ContactReport
+  };
+  /// The step with contact, and with the rate where the positions without it would exceed that.
+  Solution solve(const ContactStep& step, const ClothState& state, ConstrainedStep& solved) {
+    solved.weight = step.integrator.last_stage_weight() * step.times.step;
     solved.position = state.position;
     LongStep whole{solved.weight, step.times.end, step.position_before, state.velocity,
                    step.integrator.force_left(step.forces, step.times)};
     const std::vector<Obstacle>& obstacles = contact_.obstacles();
-    if (!step.limit || rate_->keeps(state.position)) {
+    const bool begins_within = !step.limit || rate_->keeps(state.position);
+    if (begins_within)
       solved.held = stiff_contact_.solve(step.system, step.forces, obstacles, whole, solved.position);
-      if (!step.limit || rate_->keeps(solved.position)) return 0;
+    if (step.limit && !(begins_within && rate_->keeps(solved.position))) {
+      whole.rate = &*rate_;
       solved.position = state.position;
+      solved.held = limited_contact_.solve(step.system, step.forces, obstacles, whole, solved.position);
     }
-    whole.rate = &*rate_;
-    solved.held = limited_contact_.solve(step.system, step.forces, obstacles, whole, solved.position);
-    Vec3Field velocity = state.velocity;
-    add_scaled(1 / solved.weight, solved.position, velocity);
-    add_scaled(-1 / solved.weight, state.position, velocity);
-    return solved.weight * rate_->power(solved.position, velocity);
+    ClothState there{solved.position, state.velocity};
+    add_scaled(1 / solved.weight, solved.position, there.velocity);
+    add_scaled(-1 / solved.weight, state.position, there.velocity);
+    Solution solution;
+    if (whole.rate) solution.rate_work = solved.weight * rate_->power(there.position, there.velocity);
+    solution.force_work = step.integrator.correct_work(step.forces, step.times, there);
+    return solution;
   }
 
   ObstacleContact contact_;

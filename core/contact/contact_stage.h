@@ -45,7 +45,6 @@ struct ContactStep {
   ForceModel& forces;
   Integrator& integrator;
   StepTimes times;
-  double stage_weight = 1;           ///< factor of the method's forces, see MethodFacts
   const Vec3Field& position_before;  ///< m, at the beginning of the step
   const Vec3Field& velocity_before;  ///< m/s, at the beginning of the step
   ContactMemory& memory;             ///< in: of the last step; out: of this one

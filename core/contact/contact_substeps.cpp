@@ -115,7 +115,7 @@ bool ContinuousContact::solve_long_step(const ContactStep& step, ClothState& sta
   const double accepted =
       std::max(arrived_length(), above_fall * gravity_ * step.times.step * step.times.step);
   if (StiffTarget::largest_violation(constraints_, target_position_) <= accepted) return false;
-  const LongStep whole{step.stage_weight * step.times.step,
+  const LongStep whole{step.integrator.last_stage_weight() * step.times.step,
                        step.times.end,
                        step.position_before,
                        state.velocity,

@@ -39,11 +39,13 @@ IntegratorReport Bdf2::step(ForceModel& forces, const StepTimes& times, ClothSta
   IntegratorReport report;
   if (history_ == History::held) {
     report = multistep(forces, times, state, of_step);
+    last_weight_ = stage_weight;
   } else {
     before_ = state;
     const bool is_first = history_ == History::none;
     report =
         is_first ? midpoint_.step(forces, times, state, of_step) : euler_.step(forces, times, state, of_step);
+    last_weight_ = is_first ? midpoint_.last_stage_weight() : euler_.last_stage_weight();
     end_weight_ = is_first ? 0 : times.step;
     end_power_ = 1 / times.step * of_step;
   }

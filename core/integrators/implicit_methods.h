@@ -24,6 +24,7 @@ class ImplicitMidpoint : public Integrator {
   static constexpr double stage_weight = 0.5;
   ImplicitMidpoint(double tolerance, int max_iterations) : stage_(tolerance, max_iterations) {}
   IntegratorReport step(ForceModel& forces, const StepTimes& times, ClothState& state, Work& work) override;
+  double last_stage_weight() const override { return stage_weight; }
 
  private:
   ImplicitStage stage_;
@@ -44,6 +45,7 @@ class Bdf2 : public Integrator {
   IntegratorReport step(ForceModel& forces, const StepTimes& times, ClothState& state, Work& work) override;
   /// After the limiter has acted, as a step of implicit Euler does.
   bool drifts_with_end_velocity() const override { return true; }
+  double last_stage_weight() const override { return last_weight_; }
   void forget(Change change) override;
   IntegratorMemory remember() const override;
   void recall(const IntegratorMemory& memory) override;
@@ -58,7 +60,8 @@ class Bdf2 : public Integrator {
   ImplicitEuler euler_;
   ClothState before_;       ///< y(n-1), in use where the history is held
   double step_before_ = 0;  ///< s
-  Work work_before_;        ///< J, of the last step
+  double last_weight_ = stage_weight;
+  Work work_before_;  ///< J, of the last step
   Vec3Field known_position_, known_velocity_, velocity_, position_;
 };
 

@@ -115,6 +115,10 @@ class Integrator {
   /// pins. The caller asks before the next step begins. Null: the method solves the equation, or has none.
   virtual const Vec3Field* force_left(ForceModel&, const StepTimes&) { return nullptr; }
 
+  /// Of methods that solve the equation of a step: its weight of the force in the last step divided by the
+  /// step, which another kind of step may have than MethodFacts::stage_weight says.
+  virtual double last_stage_weight() const { return 1; }
+
   /// Whether several steps in one call cost less than single steps, where the states in between are not
   /// needed.
   virtual bool gains_from_batches(const ForceModel&) const { return false; }

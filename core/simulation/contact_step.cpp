@@ -1,6 +1,5 @@
 // Contact at the end of a step, and its part of the ledger.
 #include "measure/energy.h"
-#include "scene/method_facts.h"
 #include "simulation/simulation.h"
 
 namespace cloth {
@@ -17,9 +16,8 @@ std::optional<ContactReport> Simulation::contact_of(const StepTimes& times, cons
   };
   std::function<bool()> limit;
   if (leaves_rate_to_contact()) limit = [this] { return limit_deformation(); };
-  const double stage_weight = facts_of(scene_.integrator.method).stage_weight.value_or(1);
-  return contact_->resolve({system_, *forces_, *integrator_, times, stage_weight, position_before,
-                            velocity_before, run_.contact_memory, potential, limit},
+  return contact_->resolve({system_, *forces_, *integrator_, times, position_before, velocity_before,
+                            run_.contact_memory, potential, limit},
                            run_.state);
 }
 

@@ -85,9 +85,18 @@ void StepSizeControl::recall(const std::vector<double>& numbers) {
   rejected_ = numbers[2] != 0;
 }
 
+IntegratorMemory DormandPrince::remember() const {
+  IntegratorMemory memory{.fields = {}, .numbers = control_.numbers()};
+  memory.numbers.push_back(has_touched_ ? 1 : 0);
+  return memory;
+}
+
 void DormandPrince::recall(const IntegratorMemory& memory) {
   holds_slope_ = false;
-  control_.recall(memory.numbers);
+  std::vector<double> numbers = memory.numbers;
+  has_touched_ = numbers.back() != 0;
+  numbers.pop_back();
+  control_.recall(numbers);
 }
 
 void DormandPrince::forget(Change change) {
@@ -132,38 +141,33 @@ void DormandPrince::take_slope(ForceModel& forces, double time, const ClothState
 }
 
 /// Of an accepted step: by the stages, to the order of the method. Near the bound on stiff damping the
-/// velocities of the stages, and with them their powers, are many times those of the solution; then as kicks,
-/// the impulse of damping times the mean of the velocities before and after, which is what the kinetic energy
-/// has lost.
+/// velocities of the stages, and with them their powers, are many times those of the solution, and contact
+/// leaves neighbours with velocities that differ abruptly; then by impulses
+/// (integrators/kick_impulse.h).
 Work DormandPrince::work_of(const ForceModel& forces, double step, const ClothState& from) {
   Work work;
   for (int s = 0; s < last; ++s) work += step * coupling[last][s] * power_[s];
-  if (is_resolved(work, step, power_)) return work;
-  const ClothSystem& system = forces.system();
-  Vec3Field& mean = force_;
-  mean = from.velocity;
-  add_scaled(1, speed_[last], mean);
-  for (double& v : mean.flat()) v *= 0.5;
-  double damped = 0;  // J, by everything that depends on the velocity
-  for (std::size_t i = 0; i < mean.size(); ++i) {
-    if (system.pinned[i]) continue;
-    const Vec3 rest = coupling[last][0] * begin_position_force_[i] + position_forces_[i];
-    damped += mean[i].dot(system.mass[i] * (speed_[last][i] - from.velocity[i]) - step * rest);
-  }
-  // Air and hand have a part that does not depend on the velocity, and changes its sign with it.
-  work = step * forces.power(position_, mean);
-  for (double& v : mean.flat()) v = -v;
-  const Work back = step * forces.power(position_, mean);
-  work.damping_loss = 0.5 * (work.air + back.air + work.brush + back.brush + work.pull + back.pull) - damped;
-  return work;
+  if (!has_touched_ && is_resolved(work, step, power_)) return work;
+  close_kicks(forces.system(), step, from.velocity);
+  return kicks_.work(forces, position_, step);
+}
+
+/// Once the stages of an accepted step are known.
+void DormandPrince::close_kicks(const ClothSystem& system, double step, const Vec3Field& begin) {
+  kicks_.reset(begin.size());
+  kicks_.add(step * coupling[last][0], begin_position_force_);
+  kicks_.add(step, position_forces_);
+  kicks_.close(system, begin, speed_[last]);
 }
 
 /// Returns whether the step goes on.
 bool DormandPrince::accept(ForceModel& forces, const StepTimes& inner, ClothState& state, Work& work,
                            IntegratorReport& report) {
   if (contact_) contact_->begin(state);
+  const bool corrects = contact_ && forces.couples_particles();
   if (forces.has_power()) {
     work += work_of(forces, inner.step, state);
+    if (corrects) close_kicks(forces.system(), inner.step, state.velocity);
     begin_position_force_ = forces.position_force();
   }
   std::swap(state.position, position_);
@@ -173,6 +177,10 @@ bool DormandPrince::accept(ForceModel& forces, const StepTimes& inner, ClothStat
   std::swap(power_[0], power_[last]);
   if (!contact_) return true;
   const auto outcome = contact_->correct(inner, state);
+  if (corrects) {
+    has_touched_ = outcome == InnerStepContact::Outcome::changed;
+    if (has_touched_) work.damping_loss -= kicks_.work_of_change(state.velocity);
+  }
   if (outcome == InnerStepContact::Outcome::changed) take_slope(forces, inner.end, state, report);
   if (outcome == InnerStepContact::Outcome::ended) holds_slope_ = false;
   return outcome != InnerStepContact::Outcome::ended;

@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "integrators/integrator.h"
+#include "integrators/kick_impulse.h"
 
 namespace cloth {
 
@@ -45,7 +46,7 @@ class DormandPrince : public Integrator {
   IntegratorReport step(ForceModel& forces, const StepTimes& times, ClothState& state, Work& work) override;
   void set_inner_contact(InnerStepContact* contact) override { contact_ = contact; }
   void forget(Change change) override;
-  IntegratorMemory remember() const override { return {.fields = {}, .numbers = control_.numbers()}; }
+  IntegratorMemory remember() const override;
   /// The slope is a function of state and time: the next step takes it again.
   void recall(const IntegratorMemory& memory) override;
 
@@ -59,6 +60,7 @@ class DormandPrince : public Integrator {
   void evaluate(ForceModel& forces, int stage, double time, IntegratorReport& report);
   void attempt(ForceModel& forces, const ClothState& from, const StepTimes& inner, IntegratorReport& report);
   Work work_of(const ForceModel& forces, double step, const ClothState& from);
+  void close_kicks(const ClothSystem& system, double step, const Vec3Field& begin);
   bool accept(ForceModel& forces, const StepTimes& inner, ClothState& state, Work& work,
               IntegratorReport& report);
   int first_without_slope() const;
@@ -70,6 +72,7 @@ class DormandPrince : public Integrator {
   InnerStepContact* contact_ = nullptr;
   StepSizeControl control_;
   bool holds_slope_ = false;                         ///< the first stage is that of the present state
+  bool has_touched_ = false;                         ///< contact has changed the end of the last inner step
   std::array<Vec3Field, stage_count> speed_;         ///< m/s, slope of the position at each stage
   std::array<Vec3Field, stage_count> acceleration_;  ///< m/s^2
   std::array<Work, stage_count> power_;              ///< W
@@ -77,6 +80,7 @@ class DormandPrince : public Integrator {
   Vec3Field force_;                                  ///< N, scratch
   Vec3Field begin_position_force_;                   ///< N, p at the first stage
   Vec3Field position_forces_;                        ///< N, p of the others, weighted as in the solution
+  KickImpulse kicks_;
 };
 
 }  // namespace cloth

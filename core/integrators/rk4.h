@@ -5,6 +5,7 @@
 #include <array>
 
 #include "integrators/integrator.h"
+#include "integrators/kick_impulse.h"
 #include "kernels/kutta.h"
 
 namespace cloth {
@@ -15,8 +16,16 @@ std::array<double, kutta_stages> kutta_times(const StepTimes& times);
 class Rk4 : public Integrator {
  public:
   IntegratorReport step(ForceModel& forces, const StepTimes& times, ClothState& state, Work& work) override;
+  /// Of dampers, which move within a step with particles that contact has then moved back.
+  void forget(Change change) override { kicks_are_known_ = kicks_are_known_ && change != Change::state; }
+  Work correct_work(ForceModel& forces, const StepTimes& times, const ClothState& state) override;
+  IntegratorMemory remember() const override { return {.fields = {}, .numbers = {has_touched_ ? 1.0 : 0.0}}; }
+  void recall(const IntegratorMemory& memory) override { has_touched_ = memory.numbers.at(0) != 0; }
 
  private:
+  bool has_touched_ = false;      ///< contact has changed the end of the last step
+  bool kicks_are_known_ = false;  ///< and nothing but contact has changed its end
+  KickImpulse kicks_;
   Vec3Field force_;
   Vec3Field stage_position_, stage_velocity_;
   Vec3Field next_position_, next_velocity_;  ///< the state plus the weighted stages so far

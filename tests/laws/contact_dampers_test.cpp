@@ -92,8 +92,10 @@ TEST(VeryStiffDampers, LetAClothLandAtTheLongestStableStep) {
 
 /// The velocity at which a step begins its damping is not that of its state.
 TEST(StiffDampersUnderContact, GoOnFromACheckpointToTheBit) {
-  for (const char* name : {"ball", "spikes", "fold"}) {
-    const Scene scene = stiffly_damped(name, 0.5, 0.5);
+  for (const char* name : {"ball", "spikes", "fold", "dormand-prince", "rk4"}) {
+    const bool by_stages = name == std::string("rk4") || name == std::string("dormand-prince");
+    Scene scene = stiffly_damped(by_stages ? "corner" : name, 0.5, by_stages ? 0.1 : 0.5);
+    if (by_stages) scene.integrator.method = name;
     Simulation simulation(scene);
     while (simulation.last_contact().contacts == 0) ASSERT_FALSE(simulation.step());
     ASSERT_FALSE(simulation.advance(5));
@@ -109,6 +111,22 @@ TEST(StiffDampersUnderContact, GoOnFromACheckpointToTheBit) {
       EXPECT_EQ(again->measure().ledger.forces.damping_loss, loss) << name;
     }
   }
+}
+
+/// A particle that contact holds moves within a step of a Runge-Kutta method, and dampers with it, as it has
+/// not once contact has moved it back: up to 45 % of the energy exchanged were booked too much.
+TEST(DampersUnderRungeKutta, KeepTheLedgerUnderContact) {
+  for (const char* method : {"dormand-prince", "rk4"})
+    for (const char* name : {"corner", "tablecloth"})
+      for (const double damping : {0.02, 0.1}) {
+        Scene scene = builtin_scene(name);
+        scene.springs->damping = damping;
+        scene.integrator = {.method = method};
+        scene.integrator.time_step =
+            method == std::string("rk4") ? resolved_time_step(scene).value() : 0.01;
+        const ContactLedger ledger = ledger_run(scene, {}, 0.4);
+        EXPECT_LT(ledger.account.share(), 0.045) << method << ", " << name << ", " << damping << " N s/m";
+      }
 }
 
 /// Without contact too: velocities that no solution of a step has, here random ones, lose at once what the

@@ -273,6 +273,17 @@ Work FusedDampedVerlet::correct_work(ForceModel& forces, const StepTimes& times,
   return correction;
 }
 
+IntegratorReport FusedRk4::step(ForceModel& forces, const StepTimes& times, ClothState& state, Work& work) {
+  if (general_.follows_contact() && forces.couples_particles())
+    return general_.step(forces, times, state, work);
+  general_.forget(Change::state);
+  return FusedStepper::step(forces, times, state, work);
+}
+
+Work FusedRk4::correct_work(ForceModel& forces, const StepTimes& times, const ClothState& state) {
+  return general_.correct_work(forces, times, state);
+}
+
 void FusedRk4::sweep(ForceModel& forces, const StepTimes& times, std::span<double> speed_squares,
                      ClothState& state, Work& work) {
   sums_.resize(speed_squares.size());

@@ -122,16 +122,25 @@ class FusedDampedVerlet : public Verlet {
   bool keeps_before_ = false;  ///< of the present step
 };
 
+/// A step after one whose end contact has changed is the general method's where dampers act: their work then
+/// needs the forces of the stages.
 class FusedRk4 : public FusedStepper {
  public:
   FusedRk4() : FusedStepper(kutta_stages) {}
   static bool suits(const ForceModel& forces, bool) { return forces.is_swept_whole(); }
+
+  IntegratorReport step(ForceModel& forces, const StepTimes& times, ClothState& state, Work& work) override;
+  void forget(Change change) override { general_.forget(change); }
+  Work correct_work(ForceModel& forces, const StepTimes& times, const ClothState& state) override;
+  IntegratorMemory remember() const override { return general_.remember(); }
+  void recall(const IntegratorMemory& memory) override { general_.recall(memory); }
 
  protected:
   void sweep(ForceModel& forces, const StepTimes& times, std::span<double> speed_squares, ClothState& state,
              Work& work) override;
 
  private:
+  Rk4 general_;
   std::vector<StageSums> sums_;  ///< scratch
 };
 

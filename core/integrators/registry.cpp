@@ -26,7 +26,6 @@ struct Entry {
   bool (*suits_fused)(const ForceModel&, bool constrained) = nullptr;
   Stepper (*make_fused)() = nullptr;
   Stepper (*make_unsolved)(const StepperKind&) = nullptr;  ///< of another EndVelocity than solved
-  bool keeps_impulses = false;  ///< `make`'s, for the work of dampers under contact; fused ones keep none
 };
 
 template <class Method>
@@ -119,9 +118,7 @@ std::vector<Entry> explicit_methods() {
         .oscillator = {.divisors = {1, 2, 3, 4}}},
        made<Rk4>,
        FusedRk4::suits,
-       made_fused<FusedRk4>,
-       nullptr,
-       true},
+       made_fused<FusedRk4>},
       {{.name = "dormand-prince",
         .title = "Dormand-Prince 5(4)",
         .order = 5,
@@ -264,8 +261,7 @@ StepperKind stepper_kind(const std::string& method, const ForceModel& forces, co
     const bool gains = sweeps && needs.end_velocity == EndVelocity::predicted && forces.swept().air;
     if (forces.couples_particles() || gains) return {.fused = sweeps, .end_velocity = needs.end_velocity};
   }
-  const bool needs_impulses = entry.keeps_impulses && needs.touches && forces.couples_particles();
-  kind.fused = entry.suits_fused && !needs_impulses && entry.suits_fused(forces, needs.constrained);
+  kind.fused = entry.suits_fused && entry.suits_fused(forces, needs.constrained);
   return kind;
 }
 

@@ -21,7 +21,6 @@ std::unique_ptr<Integrator> make_integrator(const IntegratorChoice& choice);
 struct StepperNeeds {
   bool constrained = false;                        ///< it steps together with a DriftConstraint
   EndVelocity end_velocity = EndVelocity::solved;  ///< the cheapest that the damping is weak enough for
-  bool touches = false;                            ///< contact may change what its steps lead to
 };
 
 struct StepperKind {

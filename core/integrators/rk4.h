@@ -19,12 +19,14 @@ class Rk4 : public Integrator {
   /// Of dampers, which move within a step with particles that contact has then moved back.
   void forget(Change change) override { kicks_are_known_ = kicks_are_known_ && change != Change::state; }
   Work correct_work(ForceModel& forces, const StepTimes& times, const ClothState& state) override;
+  /// Whether contact has changed the end of the last step.
+  bool follows_contact() const { return has_touched_; }
   IntegratorMemory remember() const override { return {.fields = {}, .numbers = {has_touched_ ? 1.0 : 0.0}}; }
   void recall(const IntegratorMemory& memory) override { has_touched_ = memory.numbers.at(0) != 0; }
 
  private:
-  bool has_touched_ = false;      ///< contact has changed the end of the last step
-  bool kicks_are_known_ = false;  ///< and nothing but contact has changed its end
+  bool has_touched_ = false;      ///< see follows_contact()
+  bool kicks_are_known_ = false;  ///< of the last step, whose end nothing but contact has changed
   KickImpulse kicks_;
   Vec3Field force_;
   Vec3Field stage_position_, stage_velocity_;

@@ -138,6 +138,7 @@ bool StiffTarget::solve(const ClothSystem& system, ForceModel& forces,
   const auto values = position.flat();
   if (std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); })) return true;
   position = integrated_position_;  // contact begins where the method ended
+  load_.assign(load_.size(), 0.0);
   return false;
 }
 

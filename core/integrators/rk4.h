@@ -16,8 +16,8 @@ std::array<double, kutta_stages> kutta_times(const StepTimes& times);
 class Rk4 : public Integrator {
  public:
   IntegratorReport step(ForceModel& forces, const StepTimes& times, ClothState& state, Work& work) override;
-  /// Of dampers, which move within a step with particles that contact has then moved back.
   void forget(Change change) override { kicks_are_known_ = kicks_are_known_ && change != Change::state; }
+  /// Of dampers, which move within a step with particles that contact has then moved back.
   Work correct_work(ForceModel& forces, const StepTimes& times, const ClothState& state) override;
   /// Whether contact has changed the end of the last step.
   bool follows_contact() const { return has_touched_; }

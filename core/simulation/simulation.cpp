@@ -182,7 +182,8 @@ EndVelocity Simulation::end_velocity() const {
 /// Whenever forces or constraints have become others. What one stepper remembers beside the state is lost
 /// where one of another kind takes over: it begins with the forces at the state.
 void Simulation::choose_stepper() {
-  const StepperKind kind = stepper_kind(scene_.integrator.method, *forces_,
+  const StepperKind kind =
+      stepper_kind(scene_.integrator.method, *forces_,
                    {.constrained = limiter_.has_value(), .end_velocity = end_velocity()});
   if (!integrator_ || kind != stepper_kind_)
     integrator_ = make_stepper(scene_.integrator, kind);

@@ -1,6 +1,7 @@
 #include "cloth/membrane.h"
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 
 namespace cloth {
@@ -86,6 +87,13 @@ std::array<double, 3> edge_bounds(const MembraneTriangle& t) {
       bound[e] += std::abs(t.k[e][f]) * (4 * square * std::sqrt(t.rest_square[e] * t.rest_square[f]) +
                                          2 * (square - 1) * t.rest_square[f]);
   return bound;
+}
+
+double stiffest_edge(const Membrane& membrane) {
+  double stiffest = 0;
+  for (const MembraneTriangle& t : membrane)
+    for (const double bound : edge_bounds(t)) stiffest = std::max(stiffest, bound);
+  return stiffest;
 }
 
 }  // namespace cloth

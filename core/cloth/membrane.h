@@ -56,6 +56,8 @@ void add_membrane_turning(const Membrane& membrane, double scale, const Vec3Fiel
 /// they get stiffer the more they are stretched.
 inline constexpr double covered_stretch = 1.1;
 std::array<double, 3> edge_bounds(const MembraneTriangle& triangle);
+/// The largest of them; 0 without triangles.
+double stiffest_edge(const Membrane& membrane);
 
 /// The vector of edge e and how it changes.
 inline Vec3 edge_of(const MembraneTriangle& t, std::size_t e, const Vec3Field& field) {

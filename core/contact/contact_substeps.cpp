@@ -97,7 +97,7 @@ bool ContinuousContact::is_near(const ContactStep& step, const ClothState& state
 
 /// Leads the state to the solution of the step with the pairs' constraints, with the planes that separate
 /// them as the step begins, and within the deformation rate; the rounds begin from there. Returns whether
-/// they violated any.
+/// there was anything to solve.
 bool ContinuousContact::solve_long_step(const ContactStep& step, ClothState& state) {
   constraints_.clear();
   for (std::size_t k = 0; k < pairs_.size(); ++k) {

@@ -55,8 +55,8 @@ std::vector<HeldParticle> LimitedContact::solve(const ClothSystem& system, Force
   obstacles_ = obstacles;
   is_met_.assign(position.size() * obstacles.size(), 0);
   sides_.clear(), planes_.clear();
-  const auto renewed = [&](const Vec3Field& at) -> std::span<const ContactConstraint> {
-    renew(system, step.begin, at);
+  const auto renewed = [&](const Vec3Field& there) -> std::span<const ContactConstraint> {
+    renew(system, step.begin, there);
     return planes_;
   };
   target_.solve(system, forces, renewed(position), step, accepted, position, renewed);

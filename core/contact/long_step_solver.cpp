@@ -6,16 +6,8 @@
 
 namespace cloth {
 
-double stiffest_membrane(const ClothSystem& system) {
-  double stiffest = 0;
-  for (const MembraneTriangle& t : system.membrane)
-    for (const double bound : edge_bounds(t)) stiffest = std::max(stiffest, bound);
-  return stiffest;
-}
-
 double largest_resistance(const ClothSystem& system, double weight) {
-  double stiffest = stiffest_membrane(system);
-  for (const SpringRun& run : system.springs) stiffest = std::max(stiffest, run.stiffness);
+  const double stiffest = std::max(stiffest_of(system).spring, stiffest_edge(system.membrane));
   return stiffest + *std::max_element(system.mass.begin(), system.mass.end()) / (weight * weight);
 }
 

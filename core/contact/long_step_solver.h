@@ -26,9 +26,6 @@ struct LongStep {
   RateTensions* rate = nullptr;      ///< null: none, or it is kept already
 };
 
-/// N/m, along an edge of the membrane; 0 without one.
-double stiffest_membrane(const ClothSystem& system);
-
 /// N/m, of the stiffest spring or membrane and the heaviest particle's inertia M/w^2 together. `weight`: w in
 /// s.
 double largest_resistance(const ClothSystem& system, double weight);

@@ -2,13 +2,12 @@
 
 #include <algorithm>
 
-#include "contact/long_step_solver.h"
 #include "limiter/tension_springs.h"
 
 namespace cloth {
 
 RateTensions::RateTensions(const Deformation& deformation, const ClothSystem& system) {
-  const double membrane = stiffest_membrane(system);
+  const double membrane = stiffest_edge(system.membrane);
   for_each_spring(system.springs,
                   [&](const SpringRun& run, std::size_t spring, std::size_t i, std::size_t j) {
                     const double length = run.rest_length;

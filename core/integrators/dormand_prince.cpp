@@ -142,22 +142,18 @@ void DormandPrince::take_slope(ForceModel& forces, double time, const ClothState
 
 /// Of an accepted step: by the stages, to the order of the method. Near the bound on stiff damping the
 /// velocities of the stages, and with them their powers, are many times those of the solution, and contact
-/// leaves neighbours with velocities that differ abruptly; then by impulses
-/// (integrators/kick_impulse.h).
-Work DormandPrince::work_of(const ForceModel& forces, double step, const ClothState& from) {
+/// leaves neighbours with velocities that differ abruptly; then by impulses (integrators/kick_impulse.h).
+/// `corrected`: contact may ask for the impulses.
+Work DormandPrince::work_of(const ForceModel& forces, double step, const ClothState& from, bool corrected) {
   Work work;
   for (int s = 0; s < last; ++s) work += step * coupling[last][s] * power_[s];
-  if (!has_touched_ && is_resolved(work, step, power_)) return work;
-  close_kicks(forces.system(), step, from.velocity);
-  return kicks_.work(forces, position_, step);
-}
-
-/// Once the stages of an accepted step are known.
-void DormandPrince::close_kicks(const ClothSystem& system, double step, const Vec3Field& begin) {
-  kicks_.reset(begin.size());
+  const bool by_stages = !has_touched_ && is_resolved(work, step, power_);
+  if (by_stages && !corrected) return work;
+  kicks_.reset(from.velocity.size());
   kicks_.add(step * coupling[last][0], begin_position_force_);
   kicks_.add(step, position_forces_);
-  kicks_.close(system, begin, speed_[last]);
+  kicks_.close(forces.system(), from.velocity, speed_[last]);
+  return by_stages ? work : kicks_.work(forces, position_, step);
 }
 
 /// Returns whether the step goes on.
@@ -166,8 +162,7 @@ bool DormandPrince::accept(ForceModel& forces, const StepTimes& inner, ClothStat
   if (contact_) contact_->begin(state);
   const bool corrects = contact_ && forces.couples_particles();
   if (forces.has_power()) {
-    work += work_of(forces, inner.step, state);
-    if (corrects) close_kicks(forces.system(), inner.step, state.velocity);
+    work += work_of(forces, inner.step, state, corrects);
     begin_position_force_ = forces.position_force();
   }
   std::swap(state.position, position_);

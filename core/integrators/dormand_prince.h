@@ -59,8 +59,7 @@ class DormandPrince : public Integrator {
   void take_slope(ForceModel& forces, double time, const ClothState& state, IntegratorReport& report);
   void evaluate(ForceModel& forces, int stage, double time, IntegratorReport& report);
   void attempt(ForceModel& forces, const ClothState& from, const StepTimes& inner, IntegratorReport& report);
-  Work work_of(const ForceModel& forces, double step, const ClothState& from);
-  void close_kicks(const ClothSystem& system, double step, const Vec3Field& begin);
+  Work work_of(const ForceModel& forces, double step, const ClothState& from, bool corrected);
   bool accept(ForceModel& forces, const StepTimes& inner, ClothState& state, Work& work,
               IntegratorReport& report);
   int first_without_slope() const;

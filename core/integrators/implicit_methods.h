@@ -58,10 +58,10 @@ class Bdf2 : public Integrator {
   ImplicitStage stage_;
   ImplicitMidpoint midpoint_;
   ImplicitEuler euler_;
-  ClothState before_;       ///< y(n-1), in use where the history is held
-  double step_before_ = 0;  ///< s
-  double last_weight_ = stage_weight;
-  Work work_before_;  ///< J, of the last step
+  ClothState before_;                  ///< y(n-1), in use where the history is held
+  double step_before_ = 0;             ///< s
+  double last_weight_ = stage_weight;  ///< see last_stage_weight()
+  Work work_before_;                   ///< J, of the last step
   Vec3Field known_position_, known_velocity_, velocity_, position_;
 };
 

@@ -21,13 +21,13 @@ IntegratorReport Rk4::step(ForceModel& forces, const StepTimes& times, ClothStat
   next_position_ = state.position;
   next_velocity_ = state.velocity;
 
-  const bool touched = std::exchange(has_touched_, false), kicks = forces.couples_particles();
-  if (kicks) kicks_.reset(state.position.size());
+  kicks_are_known_ = std::exchange(has_touched_, false) && forces.couples_particles();
+  if (kicks_are_known_) kicks_.reset(state.position.size());
   Work of_step;
   for (int s = 0; s < kutta_stages; ++s) {
     forces.update(stage_position_, at[static_cast<std::size_t>(s)]);
     of_step += h * kutta[s].weight * forces.force_and_power(stage_position_, stage_velocity_, force_);
-    if (kicks) kicks_.add(h * kutta[s].weight, forces.position_force());
+    if (kicks_are_known_) kicks_.add(h * kutta[s].weight, forces.position_force());
     add_scaled(h * kutta[s].weight, stage_velocity_, next_position_);
     add_acceleration(forces.system(), h * kutta[s].weight, force_, next_velocity_);
     if (s + 1 == kutta_stages) break;
@@ -38,9 +38,8 @@ IntegratorReport Rk4::step(ForceModel& forces, const StepTimes& times, ClothStat
     stage_velocity_ = state.velocity;
     add_acceleration(forces.system(), ahead, force_, stage_velocity_);
   }
-  kicks_are_known_ = kicks;
-  if (kicks) kicks_.close(forces.system(), state.velocity, next_velocity_);
-  work += kicks && touched ? kicks_.work(forces, stage_position_, h) : of_step;
+  if (kicks_are_known_) kicks_.close(forces.system(), state.velocity, next_velocity_);
+  work += kicks_are_known_ ? kicks_.work(forces, stage_position_, h) : of_step;
   std::swap(state.position, next_position_);
   std::swap(state.velocity, next_velocity_);
   return {.force_evaluations = kutta_stages};

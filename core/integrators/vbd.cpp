@@ -310,8 +310,7 @@ Vbd::Stiffest Vbd::stiffest_of(const ClothSystem& system, const ParticleElements
     for (const BendingEntry& entry : elements.bending(i)) own -= entry.stiffness;
     most.bending = std::max(most.bending, own);
   }
-  for (const MembraneTriangle& t : system.membrane)
-    for (const double edge : edge_bounds(t)) most.edge = std::max(most.edge, edge);
+  most.edge = stiffest_edge(system.membrane);
   for (const BendingSlider& s : system.sliders)
     for (const double c : s.coefficient) most.slider = std::max(most.slider, s.area * s.stiffness * c * c);
   return most;

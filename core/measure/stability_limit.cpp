@@ -156,8 +156,7 @@ MeshNumbers measured_mesh(const Scene& scene) {
                       .lightest = *std::min_element(system.mass.begin(), system.mass.end())};
   numbers.at_rest =
       std::min(numbers.guaranteed, std::sqrt(std::max(0.0, spectrum.largest) + spectrum.largest_residual));
-  for (const MembraneTriangle& t : system.membrane)
-    for (const double bound : edge_bounds(t)) numbers.stiffest_edge = std::max(numbers.stiffest_edge, bound);
+  numbers.stiffest_edge = stiffest_edge(system.membrane);
   return numbers;
 }
 

@@ -74,10 +74,8 @@ LinearChoice choose_linear_method(const ClothSystem& system, const Linearisation
   constexpr double iterations_per_root = 2, stiff = 1e6, growth = 0.25;
   const double iterations_per_edge = system.bending.empty() ? 1.7 : 4;  // a material's stiffnesses lie apart
   const Stiffest of_system = stiffest_of(system);
-  double stiffest = std::max(of_system.spring, of_system.bending);
+  const double stiffest = std::max({of_system.spring, of_system.bending, stiffest_edge(system.membrane)});
   double lightest = std::numeric_limits<double>::infinity();
-  for (const MembraneTriangle& t : system.membrane)
-    for (const double bound : edge_bounds(t)) stiffest = std::max(stiffest, bound);
   for (const double mass : system.mass) lightest = std::min(lightest, mass);
   const double condition = 1 + 12 * weights.position * stiffest / lightest;
   const double size = system.size();
